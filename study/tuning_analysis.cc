@@ -202,7 +202,7 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
       value.interval = comparison.interval;
       value.effect = comparison.effect;
       value.exceeds = next->exceeds;
-      value.p = comparison.p_two_sided;
+      value.p = comparison.p.value();
       value.p_holm = next->p_holm;
       result.p_by = comparison.p_by;
       ++next;

@@ -72,7 +72,7 @@ Result<std::vector<Robustness>> AnalyseRobustness(const std::vector<double>& bas
     Robustness& one = all.emplace_back();
     one.comparison = std::move(comparison);
     one.exceeds = Exceeds(one.comparison.test.a);
-    p.push_back(one.comparison.p_two_sided);
+    p.push_back(one.comparison.p.value());
   }
   const std::vector<double> adjusted = HolmAdjusted(p);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/statistics/distributions.h"
+#include "analysis/statistics/sample.h"
 #include "base/check.h"
 
 namespace gauntlet::analysis {
@@ -28,6 +29,27 @@ Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confide
   const double centre = (share + z * z / (2.0 * n)) / scale;
   const double half = z * std::sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n)) / scale;
   return {hits == 0 ? 0.0 : centre - half, hits == trials ? 1.0 : centre + half};
+}
+
+Interval AgrestiCoullInterval(double hits, double trials, double confidence) {
+  CheckConfidence(confidence);
+  const double z = NormalQuantile(0.5 + confidence / 2.0);
+  const double n = trials + z * z;
+  const double centre = (hits + z * z / 2.0) / n;
+  const double half = z * std::sqrt(centre * (1.0 - centre) / n);
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+Interval MeanShareInterval(std::span<const double> shares, double trials, double confidence) {
+  const Description described = Describe(shares);
+  const double mean = described.mean;
+  const auto cases = static_cast<double>(shares.size());
+  // Cases of which none, or all, were hit may all be alike, or each decided by one trial.
+  double effective = cases;
+  if (described.sd && *described.sd > 0.0)
+    effective =
+        std::clamp(mean * (1.0 - mean) * cases / (*described.sd * *described.sd), 1.0, cases * trials);
+  return AgrestiCoullInterval(mean * effective, effective, confidence);
 }
 
 Interval DifferenceInterval(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "analysis/statistics/interval.h"
 
@@ -10,6 +11,15 @@ namespace gauntlet::analysis {
 // Interval for a probability of which `hits` of `trials` were seen (trials >= 1, hits <= trials), at a
 // confidence in (0, 1): Wilson 1927, without continuity correction: holds its confidence on average.
 Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
+
+// The same by Agresti and Coull 1998, who keep it better where few are seen; both may be fractions, as of an
+// effective number of trials. trials > 0.
+Interval AgrestiCoullInterval(double hits, double trials, double confidence);
+
+// For the mean probability of a hit over cases, of which each was tried `trials` times on average and showed
+// one of the `shares`, at least one: of as many trials as would show so much spread by themselves (Dean and
+// Pagano 2015).
+Interval MeanShareInterval(std::span<const double> shares, double trials, double confidence);
 
 // Of the difference between the probabilities of the first and the second (Newcombe 1998, method 10: from
 // both Wilson intervals).

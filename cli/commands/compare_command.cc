@@ -15,7 +15,7 @@
 #include "controllers/registry.h"
 #include "proto/json_text.h"
 #include "study/questions/search_yield.h"
-#include "study/sets/run_set.h"
+#include "study/sets/set_pair.h"
 
 namespace gauntlet {
 namespace {
@@ -28,6 +28,8 @@ struct CompareOptions {
   std::string metric = "fitness";
   std::string svg;
   bool mixed = false;
+  bool paired = false;
+  bool unpaired = false;
   bool json = false;
 };
 
@@ -35,8 +37,11 @@ struct Outcome {
   RunSet first;
   RunSet second;
   std::vector<std::string> notes;  // of both, and what differs where that was asked for
-  analysis::Comparison comparison;
-  std::string words;
+  SetPair held;
+
+  const analysis::Comparison& comparison() const { return held.comparison; }
+  // Whether each value stands for itself, so that tests of single values are right.
+  bool alone() const { return !held.paired && !comparison().relatives; }
 };
 
 Json IntervalJson(const std::optional<analysis::Interval>& interval) {
@@ -69,11 +74,28 @@ Json SetJson(const RunSet& set, const analysis::BoxPlot& box) {
           {"box", BoxJson(box)}};
 }
 
+Json DifferenceJson(const SetPair& held) {
+  const analysis::Comparison& c = held.comparison;
+  if (held.paired)
+    return {{"mean", held.paired->difference}, {"interval", IntervalJson(held.paired->interval)}};
+  if (!c.relatives && !c.yes_no) return {};
+  return {{"mean", c.difference}, {"interval", IntervalJson(c.difference_interval)}};
+}
+
+Json PairedJson(const SetPair& held) {
+  if (!held.paired) return {};
+  return {{"cases", held.paired->cases},     {"left_out", held.left_out},
+          {"units", held.paired->units},     {"larger", held.paired->larger},
+          {"smaller", held.paired->smaller}, {"effect", held.paired->effect}};
+}
+
 std::string ComparisonJson(const Outcome& outcome, const std::string& metric) {
-  const analysis::Comparison& c = outcome.comparison;
+  const analysis::Comparison& c = outcome.comparison();
+  const bool alone = outcome.alone();
   const auto exact = [&](double analysis::ExactRankTest::*p) {
-    return c.exact ? Json((*c.exact).*p) : Json();
+    return c.exact && alone ? Json((*c.exact).*p) : Json();
   };
+  const auto single = [&](double p) { return alone ? Json(p) : Json(); };
   return JsonText({{"metric", metric},
                    {"n1", c.first.n},
                    {"n2", c.second.n},
@@ -85,18 +107,22 @@ std::string ComparisonJson(const Outcome& outcome, const std::string& metric) {
                    {"u1", c.test.u1},
                    {"u2", c.test.u2},
                    {"a", c.test.a},
-                   {"a_interval", IntervalJson(c.interval)},
+                   {"a_interval", alone ? IntervalJson(c.interval) : Json()},
                    {"a_interval_method", c.interval_method},
-                   {"a_cluster_interval", IntervalJson(c.cluster_interval)},
-                   {"a_cluster_interval_method", c.cluster_method},
-                   {"p_less", c.test.p_less},
-                   {"p_greater", c.test.p_greater},
-                   {"p_two_sided", c.test.p_two_sided},
+                   {"a_cluster_interval", Json()},
+                   {"a_cluster_interval_method", alone ? c.cluster_method : "none: see difference"},
+                   {"p_less", single(c.test.p_less)},
+                   {"p_greater", single(c.test.p_greater)},
+                   {"p_two_sided", single(c.test.p_two_sided)},
                    {"p_exact_less", exact(&analysis::ExactRankTest::p_less)},
                    {"p_exact_greater", exact(&analysis::ExactRankTest::p_greater)},
                    {"method", c.method},
                    {"effect", c.effect},
-                   {"verdict", outcome.words},
+                   {"verdict", outcome.held.words},
+                   {"p", OptionalJson(outcome.held.p)},
+                   {"p_method", outcome.held.p_by},
+                   {"difference", DifferenceJson(outcome.held)},
+                   {"paired", PairedJson(outcome.held)},
                    {"sets", {SetJson(outcome.first, c.first_box), SetJson(outcome.second, c.second_box)}},
                    {"notes", outcome.notes}});
 }
@@ -105,25 +131,12 @@ std::string IntervalText(const std::optional<analysis::Interval>& interval, cons
   return interval ? fmt::format("{:.3f} to {:.3f} ({})", interval->low, interval->high, method) : method;
 }
 
-std::string ComparisonText(const Outcome& outcome, const std::string& metric) {
-  const analysis::Comparison& c = outcome.comparison;
-  Table sets({"", "set", ">n", ">units", ">mean", ">sd", ">median", ">quartiles", ">rank sum", ">U"});
-  const auto add = [&](const char* number, const RunSet& set, const analysis::Description& d,
-                       const analysis::BoxPlot& box, double rank_sum, double u) {
-    sets.AddRow({number, Printable(set.values.name), fmt::format("{}", d.n),
-                 fmt::format("{} ({})", set.values.clusters.size(), set.unit), FormatFitness(d.mean),
-                 d.sd ? FormatFitness(*d.sd) : "-", FormatFitness(d.median),
-                 fmt::format("{:.3f} {:.3f}", box.lower_quartile, box.upper_quartile),
-                 fmt::format("{:.1f}", rank_sum), fmt::format("{:.1f}", u)});
-  };
-  add("1", outcome.first, c.first, c.first_box, c.test.rank_sum1, c.test.u1);
-  add("2", outcome.second, c.second, c.second_box, c.test.rank_sum2, c.test.u2);
-
+// Right only where each value stands for itself.
+std::string RankTestText(const analysis::Comparison& c) {
   Table figures({"", ""});
   figures.AddRow({"A (1 exceeds 2)", fmt::format("{:.4f}, effect: {} (0.56 small, 0.64 medium, 0.71 large)",
                                                  c.test.a, c.effect)});
   figures.AddRow({"its interval", IntervalText(c.interval, c.interval_method)});
-  figures.AddRow({"of whole units", IntervalText(c.cluster_interval, c.cluster_method)});
   figures.AddRow({"p, 1 less", fmt::format("{:.4g}", c.test.p_less)});
   figures.AddRow({"p, 1 greater", fmt::format("{:.4g}", c.test.p_greater)});
   figures.AddRow({"p, two-sided", fmt::format("{:.4g}", c.test.p_two_sided)});
@@ -132,8 +145,34 @@ std::string ComparisonText(const Outcome& outcome, const std::string& metric) {
     figures.AddRow(
         {"exact p", fmt::format("less {:.4g}, greater {:.4g}", c.exact->p_less, c.exact->p_greater)});
   }
-  std::string text = fmt::format("{}\n\n{}\n{}\n  {}\n", Printable(metric), sets.ToText(), figures.ToText(),
-                                 Wrapped(outcome.words, 110, 2));
+  return figures.ToText();
+}
+
+std::string ComparisonText(const Outcome& outcome, const std::string& metric) {
+  const analysis::Comparison& c = outcome.comparison();
+  const bool ranked = outcome.alone() && !c.yes_no;
+  std::vector<Column> columns = {"", "set", ">n", ">units", ">mean", ">sd", ">median", ">quartiles"};
+  if (ranked) columns.insert(columns.end(), {">rank sum", ">U"});
+  Table sets(std::move(columns));
+  const auto add = [&](const char* number, const RunSet& set, const analysis::Description& d,
+                       const analysis::BoxPlot& box, double rank_sum, double u) {
+    std::vector<Cell> row = {number,
+                             Printable(set.values.name),
+                             fmt::format("{}", d.n),
+                             fmt::format("{} ({})", set.values.clusters.size(), set.unit),
+                             FormatFitness(d.mean),
+                             d.sd ? FormatFitness(*d.sd) : "-",
+                             FormatFitness(d.median),
+                             fmt::format("{:.3f} {:.3f}", box.lower_quartile, box.upper_quartile)};
+    if (ranked) row.insert(row.end(), {fmt::format("{:.1f}", rank_sum), fmt::format("{:.1f}", u)});
+    sets.AddRow(std::move(row));
+  };
+  add("1", outcome.first, c.first, c.first_box, c.test.rank_sum1, c.test.u1);
+  add("2", outcome.second, c.second, c.second_box, c.test.rank_sum2, c.test.u2);
+
+  std::string text = fmt::format("{}\n\n{}\n", Printable(metric), sets.ToText());
+  if (ranked) text += RankTestText(c) + "\n";
+  text += fmt::format("  {}\n", Wrapped(outcome.held.words, 110, 2));
   for (const std::string& note : outcome.notes) {
     text += fmt::format("  note: {}\n", Wrapped(Printable(note), 110, 2));
   }
@@ -154,8 +193,11 @@ Result<Outcome> Compute(const CompareOptions& options) {
         "{}: not like for like{}; --mixed compares them nevertheless", differences.front(),
         differences.size() > 1 ? fmt::format(" (and {} more differences)", differences.size() - 1) : ""));
   }
-  TRY(analysis::Comparison comparison, analysis::Compare(first.values, second.values));
-  Outcome outcome{std::move(first), std::move(second), {}, std::move(comparison), ""};
+  const Pairing pairing = options.paired     ? Pairing::kDemanded
+                          : options.unpaired ? Pairing::kNever
+                                             : Pairing::kWhereShared;
+  TRY(SetPair held, HoldAgainst(first, second, options.metric, "set 1", "set 2", pairing));
+  Outcome outcome{std::move(first), std::move(second), {}, std::move(held)};
   for (const std::string& difference : differences) {
     outcome.notes.push_back("not like for like: " + difference);
   }
@@ -166,7 +208,6 @@ Result<Outcome> Compute(const CompareOptions& options) {
     outcome.notes.emplace_back(
         "a CSV file does not say what its runs are of: nobody has checked that they are like for like");
   }
-  outcome.words = analysis::InWords(outcome.comparison, "set 1", "set 2");
   return outcome;
 }
 
@@ -179,11 +220,11 @@ std::string AxisName(const Outcome& outcome, const std::string& metric) {
 }
 
 std::string Drawing(const Outcome& outcome, const std::string& metric) {
-  const analysis::Comparison& c = outcome.comparison;
+  const analysis::Comparison& c = outcome.comparison();
   return analysis::DrawBoxes(
       {.title = fmt::format("{}: set 1 against set 2", metric),
-       .outcome = fmt::format("A = {:.3f} ({}), two-sided p = {:.3g} ({})", c.test.a, c.effect, c.p_two_sided,
-                              c.p_by),
+       .outcome = fmt::format("A = {:.3f} ({}), {}", c.test.a, c.effect,
+                              analysis::TestInWords(outcome.held.p, outcome.held.p_by)),
        .axis_name = AxisName(outcome, metric),
        .boxes = {{"1: " + outcome.first.values.name, c.first_box, c.first.mean, c.first.n},
                  {"2: " + outcome.second.values.name, c.second_box, c.second.mean, c.second.n}}});
@@ -235,6 +276,14 @@ void AddCompare(CommandParser& parser) {
       .add_flag("--mixed", options.mixed,
                 "also compare runs of different scenarios, scenario parameters or versions, and say so")
       ->excludes(budget);
+  CLI::Option* paired = command.add_flag(
+      "--paired", options.paired, "compare case by case, also where one set has cases that the other lacks");
+  command
+      .add_flag("--unpaired", options.unpaired,
+                "do not compare case by case, though both are of the same cases")
+      ->excludes(paired)
+      ->excludes(budget);
+  paired->excludes(budget);
   command.add_flag("--json", options.json, "print the result as one JSON document");
   command.footer(
       R"(The subsets of a campaign have one value for each run:
@@ -246,10 +295,13 @@ void AddCompare(CommandParser& parser) {
   worst:N     the N runs of lowest fitness; of equal ones, the earlier
   search:K:   before one of these: only search K of a sweep
 
-The test is Mann-Whitney's U with the normal approximation (corrected for ties and continuity), and the exact
-test up to 10,000 pairs. Vargha and Delaney's A is the probability that a run of the first set exceeds a run of
-the second; lower fitness means a tougher case. Runs of one evolution or of one case resemble each other, so a
-second interval of A draws whole evolutions or cases instead of single runs.
+What is printed is the one test that is right for the sets. Where all cases of the smaller set are cases of the
+other, they are compared case by case (Wilcoxon's signed ranks; of yes/no metrics McNemar's test). Runs of one
+evolution or of one case resemble each other: then the means of whole evolutions or cases are compared, and fewer
+than six of either set give no p. Else the test is Mann-Whitney's U, with the normal approximation (corrected for
+ties and continuity) and exact up to 10,000 pairs; Vargha and Delaney's A is the probability that a run of the first
+set exceeds a run of the second; of yes/no metrics it is Fisher's, with the difference of the shares and their
+ratio. Lower fitness means a tougher case. Which controller is better, 'gauntlet compare-controllers' says.
 
 --budget compares searches that had equally many runs. Each campaign holds one search with several seeds; DIR,DIR,...
 joins campaigns of one seed each. It counts the cells, as in an archive search, with a case that failed in at least

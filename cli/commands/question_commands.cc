@@ -1,4 +1,5 @@
-// gauntlet evaluate, confirm, minimise, blame, check: a command for each question about cases.
+// gauntlet evaluate, confirm, minimise, blame, check, compare-controllers: a command for each question about
+// cases.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -31,12 +32,14 @@ struct QuestionOptions : LocalOptions {
   Question question;
   std::string place;
   std::vector<std::string> cases;
+  std::string other;                                       // a second experiment
+  std::vector<std::string> other_sets;                     // for it alone
   std::map<std::string, bool> flags;                       // by the option's name
   std::map<std::string, std::vector<std::string>> values;  // likewise
 };
 
-// The experiment that a new campaign is of.
-Result<Experiment> ExperimentOf(const QuestionOptions& options) {
+// An experiment that a new campaign is of.
+Result<Experiment> ExperimentOf(const QuestionOptions& options, const ExperimentOptions& experiment) {
   const Question& question = options.question;
   for (const ExtraSet& size : SetsOf(options.size)) {
     return InvalidInput(fmt::format("{} {}: '{}' searches nothing; the runs per case are --replicates K",
@@ -48,7 +51,17 @@ Result<Experiment> ExperimentOf(const QuestionOptions& options) {
     if (*option.sets != '\0' && given != options.values.end() && !given->second.empty())
       extra.push_back({option.name, option.sets, given->second.back()});
   }
-  return LoadExperimentWith(options.experiment, extra);
+  return LoadExperimentWith(experiment, extra);
+}
+
+// The second one: nothing where none is named.
+Result<std::optional<Experiment>> OtherOf(const QuestionOptions& options) {
+  if (options.other.empty() && options.other_sets.empty()) return std::optional<Experiment>();
+  ExperimentOptions other = options.experiment;
+  if (!options.other.empty()) other.experiment = options.other;
+  other.sets.insert(other.sets.end(), options.other_sets.begin(), options.other_sets.end());
+  TRY(auto loaded, ExperimentOf(options, other));
+  return std::optional(std::move(loaded));
 }
 
 Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options) {
@@ -63,7 +76,17 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
   asking.quiet = options.running.quiet;
   asking.say = [&context](const std::string& message) { PrintMessage(context, message); };
   if (options.question.place != Place::kNewCampaign) return asking;
-  TRY(asking.experiment, ExperimentOf(options));
+  const std::string& first = options.experiment.experiment;
+  if (*options.question.other != '\0' && CampaignDirectory::IsCampaign(first)) {
+    if (!options.other.empty() || !asking.options.empty() || !options.experiment.sets.empty() ||
+        options.dry_run)
+      return InvalidInput(first + " is a campaign: what it compares is decided, it is told again alone");
+    asking.place = first;
+    return asking;
+  }
+  TRY(asking.experiment, ExperimentOf(options, options.experiment));
+  TRY(asking.other, OtherOf(options));
+  if (asking.other) asking.other->seed = asking.experiment.seed;
   return asking;
 }
 
@@ -198,7 +221,14 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
 }
 
 void AddPlace(CLI::App& command, const Question& question, QuestionOptions& options) {
-  if (question.place == Place::kNewCampaign) return AddLocalOptions(command, options, /*sizes=*/false);
+  if (question.place == Place::kNewCampaign) {
+    AddLocalOptions(command, options, /*sizes=*/false);
+    if (*question.other == '\0') return;
+    command.add_option("OTHER", options.other, question.other);
+    AddValue(command, "--set-b", "KEY=VALUE", options.other_sets,
+             "change one value of the other experiment alone (--set: of both); repeatable");
+    return;
+  }
   if (question.place == Place::kCorpus) {
     command.add_option("CORPUS", options.place, "folder of cases, made by 'gauntlet corpus add'")->required();
     return;

@@ -15,15 +15,13 @@ namespace {
 constexpr std::size_t kMostInAllPairs = 4;
 
 Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first, std::size_t second) {
-  TRY(auto comparison, analysis::Compare(sets[first].values, sets[second].values));
-  ComparedPair pair{.first = first,
-                    .second = second,
-                    .comparison = std::move(comparison),
-                    .p_adjusted = 0.0,
-                    .words = "",
-                    .differences = WhatDiffers(sets[first], sets[second])};
-  pair.words = analysis::InWords(pair.comparison, sets[first].values.name, sets[second].values.name);
-  return pair;
+  TRY(auto held,
+      HoldAgainst(sets[first], sets[second], "fitness", sets[first].values.name, sets[second].values.name));
+  return ComparedPair{.first = first,
+                      .second = second,
+                      .held = std::move(held),
+                      .p_adjusted = {},
+                      .differences = WhatDiffers(sets[first], sets[second])};
 }
 
 Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunSet> sets) {
@@ -36,9 +34,14 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
     }
   }
   std::vector<double> p;
-  for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.p_two_sided);
+  for (const ComparedPair& pair : comparison.pairs) {
+    if (pair.held.p) p.push_back(*pair.held.p);
+  }
   const std::vector<double> adjusted = analysis::HolmAdjusted(p);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
+  auto next = adjusted.begin();
+  for (ComparedPair& pair : comparison.pairs) {
+    if (pair.held.p) pair.p_adjusted = *next++;
+  }
   return comparison;
 }
 

@@ -1,23 +1,22 @@
 // Sets of runs held against each other, as many as a report is given.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "analysis/statistics/comparison.h"
 #include "base/result.h"
 #include "report/figures/campaign_figures.h"
-#include "study/sets/run_set.h"
+#include "study/sets/set_pair.h"
 
 namespace gauntlet {
 
 struct ComparedPair {
   std::size_t first = 0;  // of SetComparison::sets
   std::size_t second = 0;
-  analysis::Comparison comparison;
-  double p_adjusted = 0.0;  // two-sided, by Holm over all pairs
-  std::string words;
+  SetPair held;
+  std::optional<double> p_adjusted;      // by Holm over all pairs that have a p
   std::vector<std::string> differences;  // why they are not like for like; empty = they are
 };
 

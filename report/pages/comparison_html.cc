@@ -9,12 +9,14 @@ namespace gauntlet {
 namespace {
 
 std::string PairsTable(const SetComparison& comparison) {
-  Table table({"first", "second", ">A", "95 % interval", "effect", ">p", ">p, Holm"});
+  Table table({"first", "second", ">A", "95 % interval", "effect", ">p", "by", ">p, Holm"});
   for (const ComparedPair& pair : comparison.pairs) {
-    const analysis::Comparison& c = pair.comparison;
+    const analysis::Comparison& c = pair.held.comparison;
+    const bool alone = !pair.held.paired && !c.relatives;
     table.AddRow({comparison.sets[pair.first].values.name, comparison.sets[pair.second].values.name,
-                  FitnessCell(c.test.a), IntervalCell(c.cluster_interval ? c.cluster_interval : c.interval),
-                  c.effect, DigitsCell(c.p_two_sided, 2), DigitsCell(pair.p_adjusted, 2)});
+                  FitnessCell(c.test.a), alone ? IntervalCell(c.interval) : Cell(), c.effect,
+                  pair.held.p ? DigitsCell(*pair.held.p, 2) : Cell(), pair.held.p_by,
+                  pair.p_adjusted ? DigitsCell(*pair.p_adjusted, 2) : Cell()});
   }
   return table.ToHtml();
 }
@@ -54,12 +56,13 @@ std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
     html += fmt::format(
         "<h2>{}</h2>\n{}{}\n"
         "<p>A is the probability that a run of the first set scores higher than one of the second (Vargha "
-        "and Delaney; 0.5 = no difference, 0.56 small, 0.64 medium, 0.71 large). p is Mann-Whitney's, "
-        "two-sided, exact where that can be computed; the last column makes up for the number of "
-        "tests.</p>\n{}",
+        "and Delaney; 0.5 = no difference, 0.56 small, 0.64 medium, 0.71 large). p is "
+        "two-sided; where runs are relatives it is of whole units, where both sets are of the same cases of "
+        "the "
+        "pairs; the last column makes up for the number of tests.</p>\n{}",
         Html(one.scenario), BoxesHtml(one), SetsTable(one), PairsTable(one));
     for (const ComparedPair& pair : one.pairs) {
-      html += fmt::format("<p>{}</p>\n", Html(pair.words));
+      html += fmt::format("<p>{}</p>\n", Html(pair.held.words));
       for (const std::string& difference : pair.differences)
         html += fmt::format("<p class=\"soft\">Not like for like: {}</p>\n", Html(difference));
     }

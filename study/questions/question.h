@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,12 +19,14 @@ namespace gauntlet {
 
 // What somebody asks, as it was typed.
 struct Asking {
-  std::string place;               // the campaign that the cases are of, or the corpus
+  // The campaign that the cases are of, the corpus, or a call of Question::other that is told again.
+  std::string place;
   std::vector<std::string> cases;  // that are named: runs by their numbers, and files
   std::map<std::string, std::vector<std::string>, std::less<>> options =
-      {};                            // by name; of a flag without values
-  Experiment experiment = {};        // that a new campaign is of
-  std::string program = "gauntlet";  // how commands begin
+      {};                                // by name; of a flag without values
+  Experiment experiment = {};            // that a new campaign is of
+  std::optional<Experiment> other = {};  // that it is held against (Question::other)
+  std::string program = "gauntlet";      // how commands begin
   std::function<void(const std::string& message)> say = [](const std::string&) {};
   bool quiet = false;  // says only what is wrong
 
@@ -94,6 +97,7 @@ struct Question {
   const char* help;     // below the options
   Place place = Place::kCampaign;
   Named named = Named::kSome;                // how many cases are named
+  const char* other = "";                    // help of a second experiment; "" = there is none
   std::vector<QuestionOption> options = {};  // beside those of all questions
   // The cases that are meant. Of kCampaign, as what follows.
   Result<QuestionedCampaign> (*cases)(const Asking& asking) = nullptr;  // nullptr: those that are named

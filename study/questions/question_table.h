@@ -10,9 +10,10 @@ Question ConfirmQuestion();
 Question MinimiseQuestion();
 Question BlameQuestion();
 Question CheckQuestion();
+Question ControllerQuestion();
 
 // In the order of `gauntlet --help`.
 inline constexpr Question (*kQuestions[])() = {EvaluateQuestion, ConfirmQuestion, MinimiseQuestion,
-                                               BlameQuestion, CheckQuestion};
+                                               BlameQuestion, CheckQuestion, ControllerQuestion};
 
 }  // namespace gauntlet

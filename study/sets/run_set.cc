@@ -16,12 +16,32 @@ namespace gauntlet {
 namespace {
 
 // One evolution is one unit, as its individuals are relatives; otherwise each case is one.
-void AddClusters(const std::vector<SelectedRun>& runs, bool evolves, RunSet& set) {
+Status AddUnits(const SubsetSearch& search, ResultStore& store, const std::vector<SelectedRun>& runs,
+                bool evolves, RunSet& set) {
   std::map<IndividualId, std::vector<double>> units;
+  std::map<IndividualId, CaseInSet> cases;
   for (const SelectedRun& run : runs) {
-    if (run.value) units[evolves ? 0 : run.individual].push_back(*run.value);
+    if (!run.value) continue;
+    units[evolves ? 0 : run.individual].push_back(*run.value);
+    CaseInSet& one = cases[run.individual];
+    one.mean += *run.value;
+    ++one.runs;
+  }
+  std::size_t unit = set.values.clusters.size();
+  TRY(const auto individuals, store.LoadIndividuals(search.plan.id));
+  for (const Individual& individual : individuals) {
+    const auto found = cases.find(individual.id);
+    if (found == cases.end()) continue;
+    CaseInSet& one = found->second;
+    one.hash = CaseHash(individual.test_case);
+    one.mean /= static_cast<double>(one.runs);
+  }
+  for (auto& [individual, one] : cases) {
+    one.unit = evolves ? unit : unit++;
+    set.cases.push_back(one);
   }
   for (auto& [individual, values] : units) set.values.clusters.push_back(std::move(values));
+  return Ok{};
 }
 
 Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& subset,
@@ -34,7 +54,7 @@ Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& s
                     search.place, left_out, runs.size(), metric));
   }
   const bool evolves = RowOf(search.plan.experiment).Related();
-  AddClusters(runs, evolves, set);
+  TRY(AddUnits(search, store, runs, evolves, set));
   const std::string unit = evolves ? "evolution" : "case";
   set.unit = set.unit.empty() || set.unit == unit ? unit : "evolution or case";
   return Ok{};

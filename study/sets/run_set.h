@@ -21,10 +21,19 @@ struct RunOrigin {
   proto::GoldenHashes golden_hashes;  // by controller
 };
 
+// The runs of one case in a set.
+struct CaseInSet {
+  std::uint64_t hash = 0;  // CaseHash
+  std::size_t unit = 0;    // of RunSet::values.clusters
+  double mean = 0.0;       // of its runs with a value
+  std::size_t runs = 0;
+};
+
 struct RunSet {
   analysis::ComparedSet values;    // named as it was given
   std::string unit;                // of its clusters: "evolution", "case", "row"
-  std::vector<RunOrigin> origins;  // none of a CSV file
+  std::vector<CaseInSet> cases;    // none of a CSV file
+  std::vector<RunOrigin> origins;  // likewise
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
 };
 

@@ -21,6 +21,19 @@ TEST(ProportionIntervals, AgreeWithR) {
   }
 }
 
+TEST(ProportionIntervals, OfCasesAreThoseOfTheirRunsWhereThoseAreAllAlike) {
+  // 20 of 200 runs, one a case: the spread is that of single runs, so that 199 of them would show it.
+  std::vector<double> single(200, 0.0);
+  std::fill_n(single.begin(), 20, 1.0);
+  const Interval of_runs = AgrestiCoullInterval(20, 200, 0.95);
+  EXPECT_NEAR(MeanShareInterval(single, 1.0, 0.95).low, of_runs.low, 1e-3);
+  EXPECT_NEAR(of_runs.low, 0.0650, 1e-4);
+  EXPECT_NEAR(of_runs.high, 0.1501, 1e-4);
+  // Ten runs a case, in cases that always fail or never: they are worth one each.
+  EXPECT_NEAR(MeanShareInterval(single, 10.0, 0.95).low, of_runs.low, 1e-3);
+  EXPECT_EQ(MeanShareInterval(std::vector<double>(20, 0.0), 10.0, 0.95).low, 0.0);
+}
+
 // Examples of Newcombe 1998, table II, method 10.
 TEST(ProportionIntervals, OfADifferenceAreNewcombes) {
   const Interval many = DifferenceInterval(56, 70, 48, 80, 0.95);

@@ -24,10 +24,10 @@ TEST(SetComparisonTest, TableAndWordsNameTheSameP) {
   ASSERT_TRUE(compared) << compared.error().message;
   ASSERT_EQ(compared->comparisons.size(), 1U);
   const ComparedPair& pair = compared->comparisons.front().pairs.at(0);
-  ASSERT_NE(pair.comparison.p_two_sided, pair.comparison.test.p_two_sided);
-  EXPECT_EQ(pair.p_adjusted, pair.comparison.p_two_sided) << "of a single test";
-  const std::string p = fmt::format("{:.2g}", pair.comparison.p_two_sided);
-  EXPECT_THAT(pair.words, HasSubstr("p = " + p));
+  ASSERT_NE(pair.held.p, pair.held.comparison.test.p_two_sided);
+  EXPECT_EQ(pair.p_adjusted, pair.held.p) << "of a single test";
+  const std::string p = fmt::format("{:.2g}", pair.held.p.value());
+  EXPECT_THAT(pair.held.words, HasSubstr("p = " + p));
   EXPECT_THAT(ComparisonHtml(compared->comparisons, {}), HasSubstr("<td class=\"number\">" + p + "</td>"));
 }
 
