@@ -27,24 +27,29 @@ std::string FormatBytes(double bytes) {
   return fmt::format("{:.{}f} {}", value, value < 9.95 ? 1 : 0, unit);
 }
 
-std::string ForecastJson(const Forecast& forecast, const std::vector<SearchPlan>& searches, int workers) {
+std::string ForecastJson(const Forecast& forecast, const std::vector<SearchPlan>& searches, int workers,
+                         const FailureTally& without_obstacles) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const SearchPlan& search : searches)
     list.push_back({{"settings", search.settings}, {"seed", fmt::format("{}", search.experiment.seed)}});
-  return JsonText({{"experiment", searches.front().experiment.name},
-                   {"searches", std::move(list)},
-                   {"runs", forecast.runs},
-                   {"cases", forecast.cases},
-                   {"cases_exact", forecast.cases_exact},
-                   {"workers", workers},
-                   {"seconds", forecast.Seconds(workers)},
-                   {"measured_runs", forecast.measured_runs},
-                   {"measured_without_result", forecast.measured_without_result},
-                   {"cpu_seconds_per_run", forecast.seconds_per_run},
-                   {"bytes", std::llround(forecast.bytes)}});
+  nlohmann::ordered_json json({{"experiment", searches.front().experiment.name},
+                               {"searches", std::move(list)},
+                               {"runs", forecast.runs},
+                               {"cases", forecast.cases},
+                               {"cases_exact", forecast.cases_exact},
+                               {"workers", workers},
+                               {"seconds", forecast.Seconds(workers)},
+                               {"measured_runs", forecast.measured_runs},
+                               {"measured_without_result", forecast.measured_without_result},
+                               {"cpu_seconds_per_run", forecast.seconds_per_run},
+                               {"bytes", std::llround(forecast.bytes)}});
+  if (without_obstacles.runs() > 0)
+    json["without_obstacles"] = {without_obstacles.failures, without_obstacles.runs()};
+  return JsonText(json);
 }
 
-std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>& searches, int workers) {
+std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>& searches, int workers,
+                         const FailureTally& without_obstacles) {
   Table table({"", ""});
   table.AddRow({"searches", FormatCount(searches.size())});
   table.AddRow({"runs", FormatCount(forecast.runs)});
@@ -59,6 +64,14 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
     table.AddRow({"no result", fmt::format("{} of those {} runs: {}", forecast.measured_without_result,
                                            forecast.measured_runs, Printable(forecast.why_without_result))});
   }
+  if (const int runs = without_obstacles.runs(); runs > 0) {
+    const int failures = without_obstacles.failures;
+    table.AddRow(
+        {"no obstacles", fmt::format("{} of {} runs fail{}", failures, runs,
+                                     2 * failures >= runs ? ": what fails in a search will say little"
+                                                            " about obstacles"
+                                                          : "")});
+  }
   table.AddRow({"disk", "about " + FormatBytes(forecast.bytes)});
   return fmt::format("{}: a dry run, nothing was made\n\n{}", Printable(searches.front().experiment.name),
                      table.ToText());
@@ -67,11 +80,11 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
 }  // namespace
 
 Result<ExitCode> PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                             const std::vector<SearchPlan>& searches) {
+                             const std::vector<SearchPlan>& searches, const FailureTally& without_obstacles) {
   TRY(const Forecast forecast, MakeForecast(searches));
   const int workers = campaign.session.workers;
-  context.out << (campaign.serving.json ? ForecastJson(forecast, searches, workers)
-                                        : ForecastText(forecast, searches, workers))
+  context.out << (campaign.serving.json ? ForecastJson(forecast, searches, workers, without_obstacles)
+                                        : ForecastText(forecast, searches, workers, without_obstacles))
               << std::flush;
   return kExitDone;
 }

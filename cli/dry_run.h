@@ -5,12 +5,14 @@
 
 #include "cli/command_line.h"
 #include "cli/run_campaign.h"
+#include "search/failure_tally.h"
 
 namespace gauntlet {
 
 // Says what the campaign would ask for and cost here, as text or JSON, after a few measured runs; makes no
-// file.
+// file. `without_obstacles`: runs of the empty arena, where some were looked at.
 Result<ExitCode> PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                             const std::vector<SearchPlan>& searches);
+                             const std::vector<SearchPlan>& searches,
+                             const FailureTally& without_obstacles = {});
 
 }  // namespace gauntlet

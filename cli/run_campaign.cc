@@ -9,6 +9,7 @@
 #include "base/number_text.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "cli/baseline_run.h"
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
@@ -190,6 +191,8 @@ Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaig
     return campaign.run(session);
   }();
   progress.Finish();
+  if (report && report->end == CampaignEnd::kFinished && campaign.looks_at_empty_arena && session.workers > 0)
+    LookAtEmptyArena(context, campaign.directory, session.workers);
   return report ? Conclude(context, campaign, *report)
                 : FailCampaign(context, campaign, report.error(), began);
 }

@@ -17,7 +17,8 @@ struct CampaignRun {
   std::string announcement;           // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;
   BindOptions bind;
-  SessionOptions session;  // workers, pool and batch job; the rest follows from what stands above
+  bool looks_at_empty_arena = false;  // too, when it has ended
+  SessionOptions session;             // workers, pool and batch job; the rest follows from what stands above
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out; nothing: the summary.
   std::function<Status(const SessionReport&)> report;

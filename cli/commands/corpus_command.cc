@@ -194,6 +194,8 @@ Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options
     kept.push_back(std::move(one));
   }
   TRY(CheckFits(options, kept));
+  TRY(const std::vector<Baseline> baselines, ReadBaselines(options.directory));
+  if (Matters(baselines)) PrintMessage(context, InWords(baselines, context.program, options.directory));
   std::error_code error;
   fs::create_directories(options.corpus, error);
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", options.corpus, error.message())};

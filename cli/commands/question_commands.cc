@@ -14,6 +14,7 @@
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "base/system/trusted_path.h"
+#include "cli/baseline_run.h"
 #include "cli/commands.h"
 #include "cli/dry_run.h"
 #include "cli/output/output_file.h"
@@ -209,6 +210,7 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
                                 ? RunOfNewCampaign(context, call, options)
                                 : RunOfCall(context, call, workers, options.running));
   if (options.dry_run) return PrintDryRun(context, campaign, call.searches);
+  if (options.question.looks_at_empty_arena) LookAtEmptyArena(context, options.place, workers);
   ExitCode told = kExitDone;
   campaign.report = [&](const SessionReport& report) -> Status {
     if (report.end == CampaignEnd::kStopped && place == Place::kCorpus) return Ok{};
@@ -234,6 +236,7 @@ void AddPlace(CLI::App& command, const Question& question, QuestionOptions& opti
     return;
   }
   AddDirectory(command, options.place);
+  if (question.named == Question::Named::kNone) return;
   const bool one = question.named == Question::Named::kOne;
   CLI::Option* cases = command.add_option("CASE", options.cases,
                                           one ? "the run of the campaign whose case is meant, or a case file"

@@ -11,6 +11,7 @@
 #include "cli/run_campaign.h"
 #include "cli/study_run.h"
 #include "cli/submitted_campaign.h"
+#include "study/questions/baselines.h"
 #include "study/study_campaigns.h"
 
 namespace gauntlet {
@@ -149,7 +150,9 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
     TRY(Extend(context, options));
-    return context.campaigns.Resume(options.directory, session);
+    Result<SessionReport> report = context.campaigns.Resume(options.directory, session);
+    campaign.looks_at_empty_arena = report && HasBaseline(report->summary.searches.front().search);
+    return report;
   };
   return RunCampaign(context, campaign);
 }

@@ -8,6 +8,7 @@
 #include "cli/options/sweep.h"
 #include "cli/run_campaign.h"
 #include "search/search_table.h"
+#include "study/questions/baselines.h"
 #include "study/questions/empty_arena.h"
 
 namespace gauntlet {
@@ -15,23 +16,32 @@ namespace {
 
 struct SearchOptions : LocalOptions {
   SweepOptions sweep;
+  bool needs_passing = false;  // a run without obstacles that does not fail
+};
+
+struct EvolveOptions : SearchOptions {
+  bool even_if_it_fails = false;
 };
 
 struct RandomOptions : SearchOptions {
   std::string cases;
 };
 
-// A search for the fewest obstacles that make a swarm fail needs one that does not fail without any.
-Status CheckEmptyArenas(const std::vector<SearchPlan>& searches) {
+// A search for obstacles that make a swarm fail needs one that does not always fail without any. Gives the
+// runs without obstacles of the first search.
+Result<FailureTally> CheckEmptyArenas(const std::vector<SearchPlan>& searches, const SearchOptions& options) {
+  FailureTally first;
   std::set<std::string> checked;  // controllers
   for (const SearchPlan& search : searches) {
     const Experiment& experiment = search.experiment;
-    if (RowOf(experiment).individuals != Individuals::kElites ||
-        !checked.insert(experiment.controller).second)
-      continue;
-    TRY(CheckEmptyArena(experiment));
+    if (!HasBaseline(experiment.search.algorithm) || !checked.insert(experiment.controller).second) continue;
+    TRY(const FailureTally tally, FirstEmptyRuns(experiment, options.dry_run));
+    if (checked.size() == 1) first = tally;
+    if (options.needs_passing) {
+      TRY(CheckEmptyArena(experiment, tally));
+    }
   }
-  return Ok{};
+  return first;
 }
 
 // Runs the experiment with `extra` settings, once or as a sweep.
@@ -40,17 +50,23 @@ Result<ExitCode> RunSearches(CommandContext& context, const SearchOptions& optio
   std::vector<ExtraSet> all = SetsOf(options.size);
   all.insert(all.end(), extra.begin(), extra.end());
   TRY(const std::vector<SearchPlan> searches, PlanSearches(options.experiment, all, options.sweep));
-  TRY(CheckEmptyArenas(searches));
+  FailureTally without_obstacles;
+  if (options.needs_passing || options.dry_run) {
+    TRY(without_obstacles, CheckEmptyArenas(searches, options));
+  }
   TRY(CampaignRun campaign, LocalRun(searches, options));
-  if (options.dry_run) return PrintDryRun(context, campaign, searches);
+  if (options.dry_run) return PrintDryRun(context, campaign, searches, without_obstacles);
+  campaign.looks_at_empty_arena = HasBaseline(searches.front().experiment.search.algorithm);
   campaign.run = [&](const SessionOptions& session) {
     return context.campaigns.Start(campaign.directory, searches, session);
   };
   return RunCampaign(context, campaign);
 }
 
-Result<ExitCode> RunEvolve(CommandContext& context, const SearchOptions& options) {
-  return RunSearches(context, options, {});
+Result<ExitCode> RunEvolve(CommandContext& context, const EvolveOptions& options) {
+  SearchOptions search = options;
+  search.needs_passing = !options.even_if_it_fails;
+  return RunSearches(context, search, {});
 }
 
 Result<ExitCode> RunRandom(CommandContext& context, const RandomOptions& options) {
@@ -66,6 +82,8 @@ void AddEvolve(CommandParser& parser) {
       parser.Add("evolve", "evolve test cases in which the swarm fails", RunEvolve);
   AddLocalOptions(command, options, /*sizes=*/true);
   AddSweepOptions(command, options.sweep);
+  command.add_flag("--even-if-it-fails-without-obstacles", options.even_if_it_fails,
+                   "go on though the first 5 runs without obstacles all fail, so that no layout is to blame");
   command.footer(
       R"(Evolves test cases with the experiment's search on workers of this machine, shows the progress, and ends
 with a table of the toughest cases. Ctrl-C stops the campaign (exit 3), and 'gauntlet resume DIR' continues it.

@@ -116,6 +116,7 @@ std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& a
     json["reproducible"] = seen.Name();
     json["reproducible_hosts"] = seen.Hosts();
   }
+  json["baseline"] = answers.baselines.empty() ? Json() : BaselinesTable(answers.baselines).ToJson();
   json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
   json["distinct_failures"] =
       DistinctFailuresTable(DistinctFailures(answers.confirmations, answers.smallest_layouts)).ToJson();

@@ -148,6 +148,35 @@ std::string DescribeSmallest(const SmallestLayout& smallest) {
                      obstacles == 1 ? "" : "s", verified.failures, verified.runs);
 }
 
+// What is to be read before all else; "" = nothing.
+std::string BaselineWarning(const SearchSummary& search, const CampaignAnswers& answers,
+                            const HintContext& context) {
+  if (!HasBaseline(search.search) || !Matters(answers.baselines)) return "";
+  return InWords(answers.baselines, context.program, context.directory) + "\n\n";
+}
+
+// How the swarm does without a search: what its failures are held against.
+void AddBaseline(const SearchSummary& search, const CampaignAnswers& answers, const HintContext& context,
+                 Table& facts) {
+  if (!HasBaseline(search.search)) return;
+  const auto failed = [](std::uint64_t failures, std::uint64_t runs) {
+    return fmt::format("{} of {} runs fail", FormatCount(failures), FormatCount(runs));
+  };
+  const SearchRow* row = FindSearch(search.search);
+  if (row != nullptr && row->Breeds() && search.generations.size() > 1) {
+    const GenerationSummary& first = search.generations.front();
+    facts.AddRow({"random cases", failed(first.total_failures, first.runs) + " (generation 1)"});
+  }
+  if (answers.baselines.empty()) {
+    facts.AddRow({"no obstacles", fmt::format("not known: {} baseline {} looks", context.program,
+                                              PastedPath(context.directory))});
+    return;
+  }
+  const FailureTally& tally = answers.baselines.front().tally;
+  facts.AddRow({"no obstacles", failed(static_cast<std::uint64_t>(tally.failures),
+                                       static_cast<std::uint64_t>(tally.runs()))});
+}
+
 // "" when there is nothing to tell.
 std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program) {
   std::string text = ToText(TellDistinctFailures(answers, kMostFailures, program));
@@ -168,7 +197,7 @@ std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& ans
   return fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                      Printable(summary.experiment), summary.searches.size(), finished,
                      FormatCount(summary.runs_done), FormatCount(summary.total_failures)) +
-         WarningsText(summary) +
+         WarningsText(summary) + BaselineWarning(summary.searches.front(), answers, context) +
          (seen.observed() ? fmt::format("reproducible: {}\n\n", Printable(InWords(seen))) : "") +
          SearchesTable(summary).ToText() + DistinctFailuresText(answers, context.program) +
          Hints(context, summary.finished,
@@ -215,7 +244,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
   std::string text = fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment),
                                  search == nullptr ? only->search : std::string(search->title), only->seed,
                                  summary.finished ? "finished" : "not finished");
-  text += WarningsText(summary);
+  text += WarningsText(summary) + BaselineWarning(*only, answers, context);
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));
@@ -223,6 +252,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
   Table facts({"", ""});
   AddTally(*only, only, facts);
   AddReproducibility(summary, facts);
+  AddBaseline(*only, answers, context, facts);
   return text + facts.ToText() + RunsWithoutAResult(*only, context.directory) + Generations(*only) +
          (only->archive.axes.empty() ? Members(*only) : ArchiveText(*only, context)) +
          DistinctFailuresText(answers, context.program) +

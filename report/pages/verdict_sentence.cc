@@ -59,9 +59,8 @@ std::string Confirmed(const CampaignFacts& facts) {
       FormatCount(confirmations.size()), failing);
 }
 
-}  // namespace
-
-std::string VerdictOf(const CampaignPages& pages) {
+// What the runs came to.
+std::string CourseOf(const CampaignPages& pages) {
   const CampaignFacts& facts = pages.facts;
   const CampaignSummary& summary = facts.summary;
   if (summary.runs_done == 0) return "Nothing has been simulated yet.";
@@ -77,6 +76,17 @@ std::string VerdictOf(const CampaignPages& pages) {
   return fmt::format("The {} broke: it failed as a whole in {} of {} runs ({}).{}{}{}", SwarmOf(facts),
                      FormatCount(summary.total_failures), FormatCount(summary.runs_done), Percent(share),
                      Learning(pages.courses), Toughest(facts), Confirmed(facts));
+}
+
+}  // namespace
+
+std::string VerdictOf(const CampaignPages& pages) {
+  const CampaignFacts& facts = pages.facts;
+  const std::string course = CourseOf(pages);
+  if (facts.summary.total_failures == 0 || !HasBaseline(facts.plans.front().experiment.search.algorithm))
+    return course;
+  const std::string baseline = InWords(facts.answers.baselines, "gauntlet", facts.directory);
+  return Matters(facts.answers.baselines) ? baseline + " " + course : course + " " + baseline;
 }
 
 }  // namespace gauntlet

@@ -109,7 +109,7 @@ void AddPart(Cell index, Cell names, const BlamedPart& part, Cell touched, Table
   table.AddRow(std::move(row));
 }
 
-Result<Told> TellBlame(const Asking& /*asking*/, const Call& /*call*/, std::span<const CaseAnswer> answers) {
+Result<Told> TellBlame(const Asking& asking, const Call& /*call*/, std::span<const CaseAnswer> answers) {
   const Blame blame = BlameIn(answers.front());
   Told told;
   Table singles(BlameColumns({ForPrograms("index"), {"without obstacle", "number"}}));
@@ -135,7 +135,9 @@ Result<Told> TellBlame(const Asking& /*asking*/, const Call& /*call*/, std::span
                         {"sentence", sentence},
                         {"simulations", blame.runs},
                         {"picture", fails ? Json(file) : Json()}});
-  told.section.lead = {sentence};
+  TRY(const std::vector<Baseline> baselines, ReadBaselines(asking.place));
+  if (Matters(baselines)) told.section.lead.push_back(InWords(baselines, asking.program, asking.place));
+  told.section.lead.push_back(sentence);
   if (!fails) {
     told.conclusion = Conclusion::kRefused;
     return told;

@@ -15,6 +15,7 @@
 #include "proto/run_failure.h"
 #include "search/experiment/failure_cells.h"
 #include "search/given/repeated_case.h"
+#include "study/questions/baselines.h"
 
 namespace gauntlet {
 namespace {
@@ -74,10 +75,15 @@ Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
   const auto files = std::ranges::count(cases, RunId{0}, &Confirmation::run);
   const std::string of_files =
       files == 0 ? "" : fmt::format(" ({} from {})", files, files == 1 ? "a file" : "files");
-  Told told{.section = {.table = table}, .json = JsonText({{"cases", table.ToJson()}})};
+  TRY(const std::vector<Baseline> baselines, ReadBaselines(asking.place));
+  Told told{.section = {.table = table},
+            .json = JsonText({{"cases", table.ToJson()}, {"baseline", BaselinesTable(baselines).ToJson()}})};
+  const std::string baseline = InWords(baselines, asking.program, asking.place);
+  if (Matters(baselines)) told.section.lead = {baseline};
   told.section.sentences = {
       fmt::format("{} of {} cases{} confirmed: with fresh seeds they fail in at least half of the runs.",
                   confirmed, cases.size(), of_files)};
+  if (!Matters(baselines)) told.section.sentences.push_back(baseline);
   const Confirmation* toughest = nullptr;  // of those that a run names
   for (const Confirmation& one : cases) {
     if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
@@ -192,6 +198,7 @@ Result<CampaignAnswers> ReadAnswers(const std::string& dir) {
   CampaignAnswers answers;
   TRY(answers.confirmations, ReadConfirmations(dir));
   TRY(answers.smallest_layouts, ReadSmallestLayouts(dir));
+  TRY(answers.baselines, ReadBaselines(dir));
   return answers;
 }
 
@@ -226,7 +233,8 @@ Question ConfirmQuestion() {
       .about = AboutConfirmation,
       .key = ConfirmationKey,
       .enough = HasEnoughRuns,
-      .tell = TellConfirmations};
+      .tell = TellConfirmations,
+      .looks_at_empty_arena = true};
 }
 
 }  // namespace gauntlet

@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "search/archive/failure_archive.h"
 #include "search/failure_tally.h"
+#include "study/questions/baselines.h"
 #include "study/questions/case_answer.h"
 #include "study/questions/question.h"
 #include "study/questions/smallest_layouts.h"
@@ -62,10 +63,11 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
 // from a file.
 Table ConfirmationsTable(const std::vector<Confirmation>& confirmations);
 
-// What `confirm` and `minimise` have found out about the cases of the campaign in `dir`.
+// What `confirm`, `minimise` and `baseline` have found out about the cases of the campaign in `dir`.
 struct CampaignAnswers {
   std::vector<Confirmation> confirmations;
   std::vector<SmallestLayout> smallest_layouts;
+  std::vector<Baseline> baselines;
 };
 Result<CampaignAnswers> ReadAnswers(const std::string& dir);
 

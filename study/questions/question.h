@@ -90,7 +90,7 @@ struct Question {
     kCorpus,       // CORPUS; its calls are kept in CORPUS/.name
     kNewCampaign,  // EXPERIMENT; each call is a campaign wherever the user says
   };
-  enum class Named { kAny, kSome, kOne };
+  enum class Named { kAny, kSome, kOne, kNone };
 
   const char* name;     // of the command
   const char* summary;  // one line of help
@@ -110,7 +110,8 @@ struct Question {
   Result<Call> (*plan)(const Asking& asking) = nullptr;
   // Of the cases in the order of the call. Those of kCampaign are decided.
   Result<Told> (*tell)(const Asking& asking, const Call& call, std::span<const CaseAnswer> answers) = nullptr;
-  const char* page_title = "";  // of its section on the page of a case; "" = pages tell it elsewhere
+  bool looks_at_empty_arena = false;  // first, unless that is known (baselines.h)
+  const char* page_title = "";        // of its section on the page of a case; "" = pages tell it elsewhere
 };
 
 // The cases that are named. Error: also that one of them has no obstacle.

@@ -6,6 +6,7 @@
 namespace gauntlet {
 
 Question EvaluateQuestion();
+Question BaselineQuestion();
 Question ConfirmQuestion();
 Question MinimiseQuestion();
 Question BlameQuestion();
@@ -13,7 +14,8 @@ Question CheckQuestion();
 Question ControllerQuestion();
 
 // In the order of `gauntlet --help`.
-inline constexpr Question (*kQuestions[])() = {EvaluateQuestion, ConfirmQuestion, MinimiseQuestion,
-                                               BlameQuestion, CheckQuestion, ControllerQuestion};
+inline constexpr Question (*kQuestions[])() = {EvaluateQuestion,  BaselineQuestion, ConfirmQuestion,
+                                               MinimiseQuestion,  BlameQuestion,    CheckQuestion,
+                                               ControllerQuestion};
 
 }  // namespace gauntlet

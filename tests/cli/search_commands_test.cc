@@ -84,12 +84,13 @@ TEST_F(DryRun, SaysWhatAnEvolutionWouldCost) {
   EXPECT_EQ(out_.str(),
             "flocking: a dry run, nothing was made\n"
             "\n"
-            "  searches    3\n"
-            "  runs        3,000\n"
-            "  test cases  at most 354 different\n"
-            "  time        about 12 min 30 s with 2 workers (11 of the first runs took 500 ms each here; "
+            "  searches      3\n"
+            "  runs          3,000\n"
+            "  test cases    at most 354 different\n"
+            "  time          about 12 min 30 s with 2 workers (11 of the first runs took 500 ms each here; "
             "later ones may differ)\n"
-            "  disk        about 1.7 MB\n");
+            "  no obstacles  0 of 5 runs fail\n"
+            "  disk          about 1.7 MB\n");
   EXPECT_THAT(err_.str(), IsEmpty());
   ExpectNothingMade();
 }

@@ -14,7 +14,8 @@ TEST(ChooseCases, DrawsThoseThatRandomSearchSimulates) {
   EXPECT_EQ(chosen.words, "30 random cases of seed 7");
   ASSERT_EQ(chosen.groups.size(), 1U);
   EXPECT_FALSE(chosen.groups[0].related);
-  const auto search = MakeSearch(testing_support::Flocking({"seed=7", "search.algorithm=random", "search.cases=30"})).value();
+  const auto search =
+      MakeSearch(testing_support::Flocking({"seed=7", "search.algorithm=random", "search.cases=30"})).value();
   const auto requests = search->Ask();
   ASSERT_EQ(chosen.groups[0].cases.size(), 30U);
   for (std::size_t i = 0; i < requests.size(); ++i)

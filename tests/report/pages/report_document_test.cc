@@ -96,7 +96,9 @@ TEST(VerdictTest, SaysWhatCameOfIt) {
   pages.facts.cases.front().total_failures = 1;
   EXPECT_EQ(VerdictOf(pages),
             "The swarm of birds broke: it failed as a whole in 1 of 1 runs (100.0 %). The toughest test "
-            "case, number 1, made the swarm fail in 1 of 1 runs.");
+            "case, number 1, made the swarm fail in 1 of 1 runs. How often it fails without any obstacle is "
+            "not known: "
+            "gauntlet baseline x looks.");
   pages.facts.summary.total_failures = 0;
   EXPECT_EQ(VerdictOf(pages), "The swarm of birds held out: in none of 1 runs did it fail as a whole.");
   pages.facts.summary.runs_failed = 1;

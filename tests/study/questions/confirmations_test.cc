@@ -71,6 +71,7 @@ TEST(ConfirmQuestion, TellsATableAndLeadsOnToTheObstaclesOfTheToughest) {
             "  walls.json  0 of 6    0 to  39 %        pass\n"
             "  1 of 3 cases (1 from a file) confirmed: with fresh seeds they fail in at least half of the "
             "runs.\n"
+            "  How often it fails without any obstacle is not known: gauntlet baseline d looks.\n"
             "  gauntlet minimise d 4  # which of its obstacles does it take?\n"
             "  gauntlet blame d 4     # how much does each of them do?\n");
   EXPECT_EQ(told.conclusion, Conclusion::kDone);

@@ -1,0 +1,14 @@
+// How often a campaign's swarm fails without any obstacle, looked at beside what the campaign itself does.
+#pragma once
+
+#include <string>
+
+#include "cli/command_line.h"
+
+namespace gauntlet {
+
+// Answers `gauntlet baseline` of the campaign in `directory`, unless that is done, or is asked of none of its
+// searches. What stands in the way is said, and stops nothing.
+void LookAtEmptyArena(CommandContext& context, const std::string& directory, int workers);
+
+}  // namespace gauntlet
