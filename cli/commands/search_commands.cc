@@ -35,10 +35,12 @@ Result<FailureTally> CheckEmptyArenas(const std::vector<SearchPlan>& searches, c
   for (const SearchPlan& search : searches) {
     const Experiment& experiment = search.experiment;
     if (!HasBaseline(experiment.search.algorithm) || !checked.insert(experiment.controller).second) continue;
-    TRY(const FailureTally tally, FirstEmptyRuns(experiment, options.dry_run));
-    if (checked.size() == 1) first = tally;
+    // What keeps a run from being simulated at all, the campaign itself will tell better.
+    const Result<FailureTally> tally = FirstEmptyRuns(experiment, options.dry_run);
+    if (!tally) continue;
+    if (checked.size() == 1) first = *tally;
     if (options.needs_passing) {
-      TRY(CheckEmptyArena(experiment, tally));
+      TRY(CheckEmptyArena(experiment, *tally));
     }
   }
   return first;

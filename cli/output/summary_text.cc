@@ -214,7 +214,7 @@ std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const Campaig
   if (const SearchRow* row = FindSearch(summary.search); row != nullptr && row->varies_settings)
     commands.push_back(
         {fmt::format("{} fit {}", context.program, directory), "the settings that it has found"});
-  if (const auto members = Toughest(summary); !members.empty()) {
+  if (const auto members = Toughest(summary); !members.empty() && !ToughestOf(answers.confirmations)) {
     const PopulationMember& best = *members.front();
     commands.push_back(
         {ReplayHint(context, best.runs.back(), "case", best.id), "see what happened in the toughest case"});

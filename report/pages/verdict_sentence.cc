@@ -40,6 +40,9 @@ std::string Learning(const std::vector<SearchCourse>& courses) {
 }
 
 std::string Toughest(const CampaignFacts& facts) {
+  if (const Confirmation* one = ToughestOf(facts.answers.confirmations))
+    return fmt::format(" The toughest test case, that of run {}, failed in {} runs with fresh seeds.",
+                       one->run, OutOf(one->tally));
   const auto toughest = std::ranges::find_if(
       facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.toughest != 0; });
   if (toughest == facts.cases.end()) return "";

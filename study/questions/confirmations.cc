@@ -20,8 +20,9 @@
 namespace gauntlet {
 namespace {
 
-double ShareOfFailures(const Confirmation& one) {
-  return static_cast<double>(one.tally.failures) / static_cast<double>(one.tally.runs());
+// 5 of 5 runs say less than 61 of 64.
+double Toughness(const Confirmation& one) {
+  return one.interval.low;
 }
 
 // Of what is left of the case; null when it was not minimised.
@@ -84,11 +85,7 @@ Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
       fmt::format("{} of {} cases{} confirmed: with fresh seeds they fail in at least half of the runs.",
                   confirmed, cases.size(), of_files)};
   if (!Matters(baselines)) told.section.sentences.push_back(baseline);
-  const Confirmation* toughest = nullptr;  // of those that a run names
-  for (const Confirmation& one : cases) {
-    if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
-    if (toughest == nullptr || ShareOfFailures(one) > ShareOfFailures(*toughest)) toughest = &one;
-  }
+  const Confirmation* toughest = ToughestOf(cases);
   if (toughest == nullptr) return told;
   const std::string dir = PastedPath(asking.place);
   told.section.commands = {
@@ -164,6 +161,15 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   return confirmations;
 }
 
+const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations) {
+  const Confirmation* toughest = nullptr;
+  for (const Confirmation& one : confirmations) {
+    if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
+    if (toughest == nullptr || Toughness(one) > Toughness(*toughest)) toughest = &one;
+  }
+  return toughest;
+}
+
 std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
                                               const std::vector<SmallestLayout>& layouts) {
   using NameAndPlugin = std::pair<std::string, std::string>;
@@ -175,7 +181,7 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
   for (auto& [name, cases] : failed) {
     const controllers::ScenarioInfo* scenario = controllers::FindScenario(name.first, name.second);
     if (scenario == nullptr) continue;
-    std::ranges::stable_sort(cases, std::greater(), [](const auto* one) { return ShareOfFailures(*one); });
+    std::ranges::stable_sort(cases, std::greater(), [](const auto* one) { return Toughness(*one); });
     std::vector<FailureWay> ways;
     for (const Confirmation* one : cases) ways.push_back(one->example->way);
     const std::vector<std::size_t> groups = GroupWays(*scenario, ways);
@@ -189,7 +195,7 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
     }
   }
   std::ranges::stable_sort(distinct, std::greater(), [](const DistinctFailure& one) {
-    return std::pair(ShareOfFailures(*one.cases.front()), one.cases.size());
+    return std::pair(Toughness(*one.cases.front()), one.cases.size());
   });
   return distinct;
 }

@@ -47,9 +47,14 @@ Confirmation ConfirmationIn(const CaseAnswer& answer);
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
 
+// Of the confirmed cases that a run names, the one whose failure probability is at least the highest: by the
+// lower bound of its interval, of equal ones the first; null: there is none. All that tells of a toughest
+// case means this one, once cases were confirmed.
+const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations);
+
 // Cases that failed with fresh seeds and are one and the same failure.
 struct DistinctFailure {
-  std::vector<const Confirmation*> cases;  // the toughest first: by the share of runs that failed
+  std::vector<const Confirmation*> cases;  // the toughest first, as in ToughestOf
   std::string what;                        // of the toughest one, in words
   bool confirmed = false;                  // at least one of the cases
   // Of what `gauntlet minimise` has left of the cases, the one with the fewest obstacles; null: of none.

@@ -17,7 +17,7 @@
 #include "search/search_table.h"
 #include "study/questions/corpus_experiment.h"
 #include "study/questions/question_table.h"
-#include "study/sets/chosen_cases.h"
+#include "study/questions/chosen_cases.h"
 #include "study/sets/paired_comparison.h"
 #include "study/sets/run_set.h"
 

@@ -99,8 +99,7 @@ PairedComparison ComparePairs(const PairedValues& values) {
   std::vector<double> differences;
   for (const PairedValue& one : values.cases) {
     differences.push_back(one[0] - one[1]);
-    for (std::size_t side = 0; side < 2; ++side)
-      made.means[side] += one[side];
+    for (std::size_t side = 0; side < 2; ++side) made.means[side] += one[side];
     made.larger += one[0] > one[1] ? 1 : 0;
     made.smaller += one[0] < one[1] ? 1 : 0;
   }

@@ -146,8 +146,10 @@ std::vector<std::string> CampaignArguments(const std::string& command, const Sma
 }
 
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
-  std::vector<std::string> arguments =
-      CampaignArguments(campaign.case_file.empty() ? "evolve" : "evaluate", campaign, dir);
+  const bool evolves = campaign.case_file.empty();
+  std::vector<std::string> arguments = CampaignArguments(evolves ? "evolve" : "evaluate", campaign, dir);
+  // Its runs are too short for some swarms to get anywhere.
+  if (evolves) arguments.emplace_back("--even-if-it-fails-without-obstacles");
   arguments.insert(arguments.end(), {"--workers", std::to_string(workers), "--quiet"});
   return arguments;
 }

@@ -26,8 +26,10 @@ class ScenarioPlugin : public testing::Test {
   }
 
   ProcessResult Evolve(const std::string& dir, int workers, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {
-        "evolve", experiment_, "--dir", dir, "--quiet", "--workers", std::to_string(workers)};
+    std::vector<std::string> arguments = {"evolve",    experiment_,
+                                          "--dir",     dir,
+                                          "--quiet",   "--even-if-it-fails-without-obstacles",
+                                          "--workers", std::to_string(workers)};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Gauntlet(arguments);
   }

@@ -11,7 +11,7 @@ Confirmation Confirmed(RunId run, int failures, int passes, FailureVerdict verdi
                    .run = run,
                    .tally = {.failures = failures, .passes = passes},
                    .verdict = verdict,
-                   .interval = {0.25, 0.75}};
+                   .interval = {failures / 10.0, 0.75}};
   if (failures > 0) {
     one.example = {.scenario = "flocking",
                    .way = {.kind = 0, .place = sim::Vec2(static_cast<double>(run), 0.0)},
@@ -34,7 +34,7 @@ TEST(DistinctFailuresTest, AreCountedAndToldToughestFirst) {
             "  and 1 more; see show --json\n");
   const auto rows = DistinctFailuresTable(DistinctFailures(answers.confirmations, {})).ToJson();
   EXPECT_EQ(rows.at(0).dump(),
-            R"j({"k":5,"n":5,"interval":[0.25,0.75],"cases":["run 8"],"what":"near (8.0, 0.0)",)j"
+            R"j({"k":5,"n":5,"interval":[0.5,0.75],"cases":["run 8"],"what":"near (8.0, 0.0)",)j"
             R"j("smallest":null,"confirmed":true,"example":{"campaign":"c/confirm/1","run":80}})j");
 }
 

@@ -77,11 +77,24 @@ TEST(ConfirmQuestion, TellsATableAndLeadsOnToTheObstaclesOfTheToughest) {
   EXPECT_EQ(told.conclusion, Conclusion::kDone);
 }
 
+TEST(ToughestOf, IsThatOfTheHighestLowerBound) {
+  const auto failed = [](RunId run, int failures, int passes) {
+    Confirmation one{.run = run, .tally = {.failures = failures, .passes = passes}};
+    one.verdict = FailureVerdict::kFail;
+    one.interval = FailureInterval(one.tally);
+    return one;
+  };
+  const std::vector<Confirmation> known = {failed(1, 5, 0), failed(2, 95, 5), failed(0, 100, 0)};
+  EXPECT_EQ(ToughestOf(known)->run, 2U) << "5 of 5 runs say less; a case from a file has no run";
+  EXPECT_EQ(ToughestOf({}), nullptr);
+}
+
 TEST(DistinctFailures, AreByPlaceToughestFirstWithTheSmallestLayout) {
   const auto failed = [](RunId run, int failures, sim::Vec2 place, FailureVerdict verdict) {
     Confirmation one;
     one.run = run;
     one.tally = {.failures = failures, .passes = 10 - failures, .errors = 0};
+    one.interval = FailureInterval(one.tally);
     one.verdict = verdict;
     one.example = {"flocking", {0, place}, "c/confirm/1", 7};
     return one;

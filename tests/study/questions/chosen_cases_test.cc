@@ -1,4 +1,4 @@
-#include "study/sets/chosen_cases.h"
+#include "study/questions/chosen_cases.h"
 
 #include <gtest/gtest.h>
 
