@@ -15,9 +15,9 @@
 #include "controllers/registry.h"
 #include "proto/json_text.h"
 #include "search/search_table.h"
+#include "study/questions/chosen_cases.h"
 #include "study/questions/corpus_experiment.h"
 #include "study/questions/question_table.h"
-#include "study/questions/chosen_cases.h"
 #include "study/sets/paired_comparison.h"
 #include "study/sets/run_set.h"
 
