@@ -163,9 +163,11 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
 
 const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations) {
   const Confirmation* toughest = nullptr;
-  for (const Confirmation& one : confirmations) {
-    if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
-    if (toughest == nullptr || Toughness(one) > Toughness(*toughest)) toughest = &one;
+  for (const DistinctFailure& failure : DistinctFailures(confirmations, {})) {
+    for (const Confirmation* one : failure.cases) {
+      if (one->verdict != FailureVerdict::kFail || one->run == 0) continue;
+      if (toughest == nullptr || Toughness(*one) > Toughness(*toughest)) toughest = one;
+    }
   }
   return toughest;
 }

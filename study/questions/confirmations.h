@@ -47,8 +47,8 @@ Confirmation ConfirmationIn(const CaseAnswer& answer);
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
 
-// Of the confirmed cases that a run names, the one whose failure probability is at least the highest: by the
-// lower bound of its interval, of equal ones the first; null: there is none. All that tells of a toughest
+// Of the confirmed cases that a run names, that with the highest lower bound of its failure probability, of
+// equal ones the first in the list of distinct failures; null: there is none. All that tells of a toughest
 // case means this one, once cases were confirmed.
 const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations);
 

@@ -82,6 +82,7 @@ TEST(ToughestOf, IsThatOfTheHighestLowerBound) {
     Confirmation one{.run = run, .tally = {.failures = failures, .passes = passes}};
     one.verdict = FailureVerdict::kFail;
     one.interval = FailureInterval(one.tally);
+    one.example = {"flocking", {0, sim::Vec2{static_cast<double>(run), 0.0}}, "c/confirm/1", 7};
     return one;
   };
   const std::vector<Confirmation> known = {failed(1, 5, 0), failed(2, 95, 5), failed(0, 100, 0)};
