@@ -1,7 +1,5 @@
 #include "cli/baseline_run.h"
 
-#include <algorithm>
-
 #include "cli/options/stop_signal.h"
 #include "master/directory/campaign_directory.h"
 #include "study/questions/baselines.h"
@@ -11,9 +9,7 @@ namespace {
 
 Status Look(CommandContext& context, const std::string& directory, int workers) {
   TRY(const Call call, PlanCall(BaselineQuestion(), {.place = directory}));
-  const bool asked =
-      std::ranges::any_of(call.cases, [](const CaseAnswer& one) { return one.experiment != nullptr; });
-  if (!asked || !call.Simulates()) return Ok{};
+  if (!call.Simulates()) return Ok{};
   SessionOptions session;
   session.workers = workers;
   session.stop_requested = StopSignal::Requested;

@@ -7,8 +7,8 @@
 
 namespace gauntlet {
 
-// Answers `gauntlet baseline` of the campaign in `directory`, unless that is done, or is asked of none of its
-// searches. What stands in the way is said, and stops nothing.
+// Answers `gauntlet baseline` of the campaign in `directory`, unless that is done. What stands in the way is
+// said, and stops nothing.
 void LookAtEmptyArena(CommandContext& context, const std::string& directory, int workers);
 
 }  // namespace gauntlet

@@ -217,7 +217,12 @@ PairedValues FailuresOf(const std::vector<Pair>& pairs) {
 std::vector<ComparedMetric> MetricsOf(const std::vector<Pair>& pairs) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(*pairs.front().sides[0]->experiment);
   std::vector<std::string> names = {"fitness"};
-  for (const auto& [name, value] : pairs.front().sides[0]->runs.front().result.metrics) names.push_back(name);
+  for (const Pair& pair : pairs) {
+    for (const CaseRun& run : pair.sides[0]->runs) {
+      if (names.size() > 1) break;  // a run without a result has none
+      for (const auto& [name, value] : run.result.metrics) names.push_back(name);
+    }
+  }
   std::vector<ComparedMetric> metrics;
   for (const std::string& name : names) {
     const controllers::MetricInfo* info =
@@ -309,7 +314,7 @@ std::string BetterOf(const PairedComparison& failures) {
 std::string Verdict(const PairedComparison& failures) {
   const std::string better = BetterOf(failures);
   const std::string test = analysis::TestInWords(failures.p, failures.method);
-  const auto points = [](double share) { return fmt::format("{:.1f}", 100.0 * std::abs(share)); };
+  const auto points = [](double share) { return fmt::format("{:.1f}", 100.0 * share); };
   const std::string range = DifferenceInWords(failures, /*yes_no=*/true);
   if (better.empty())
     return fmt::format("Neither is {}: A less B is {}{}; {}.",
@@ -317,9 +322,11 @@ std::string Verdict(const PairedComparison& failures) {
                        failures.p ? ", which may be a matter of chance" : "", test);
   const std::string worse = better == "A" ? "B" : "A";
   const analysis::Interval& interval = *failures.interval;
-  const auto [least, most] = std::minmax(std::abs(interval.low), std::abs(interval.high));
+  const bool a_is = better == "A";
+  const double least = a_is ? -interval.high : interval.low;
+  const double most = a_is ? -interval.low : interval.high;
   return fmt::format("{} is better: it fails {} percentage points less often than {} ({} to {}); {}.", better,
-                     points(failures.difference), worse, points(least), points(most), test);
+                     points(std::abs(failures.difference)), worse, points(least), points(most), test);
 }
 
 struct Findings {
