@@ -54,6 +54,7 @@ void AddImport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
 void AddFit(CommandParser& parser);
+void AddMargin(CommandParser& parser);
 void AddAdopt(CommandParser& parser);
 void AddBuildController(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
@@ -64,10 +65,30 @@ void AddStop(CommandParser& parser);
 void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
-inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom,  AddResume, AddShow,   AddReplay, AddQuestions,
-    AddCorpus, AddCompare, AddStudy,  AddTune,   AddFit,    AddReport,
-    AddUi,     AddFigure,  AddExport, AddImport, AddAdopt,  AddBuildController,
-    AddSubmit, AddMaster,  AddStatus, AddWatch,  AddStop,   AddList};
+inline constexpr void (*kCommands[])(CommandParser&) = {AddEvolve,
+                                                        AddRandom,
+                                                        AddResume,
+                                                        AddShow,
+                                                        AddReplay,
+                                                        AddQuestions,
+                                                        AddMargin,
+                                                        AddCorpus,
+                                                        AddCompare,
+                                                        AddStudy,
+                                                        AddTune,
+                                                        AddFit,
+                                                        AddReport,
+                                                        AddUi,
+                                                        AddFigure,
+                                                        AddExport,
+                                                        AddImport,
+                                                        AddAdopt,
+                                                        AddBuildController,
+                                                        AddSubmit,
+                                                        AddMaster,
+                                                        AddStatus,
+                                                        AddWatch,
+                                                        AddStop,
+                                                        AddList};
 
 }  // namespace gauntlet

@@ -97,6 +97,7 @@ struct SearchProgress {
 using History = std::function<Status(const std::function<void(const EvaluationOutcome&)>& visit)>;
 
 class FitRounds;
+class MarginStages;
 
 class SearchAlgorithm {
  public:
@@ -116,6 +117,8 @@ class SearchAlgorithm {
   virtual ArchiveView Archive() const { return {}; }
   // Of a search over settings; else nullptr.
   virtual const FitRounds* Fit() const { return nullptr; }
+  // Of a search along a range; else nullptr.
+  virtual const MarginStages* Margin() const { return nullptr; }
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
   // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.

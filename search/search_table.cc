@@ -18,6 +18,7 @@
 #include "search/given/case_blame.h"
 #include "search/given/case_minimiser.h"
 #include "search/given/repeated_case.h"
+#include "search/margin/margin_search.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet {
@@ -30,7 +31,8 @@ std::string_view NameOf(Individuals individuals) {
 std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
-                                  MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow()};
+                                  MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow(),
+                                  MarginRow()};
   return rows;
 }
 

@@ -14,6 +14,7 @@
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
 #include "report/figures/fit_figure.h"
+#include "report/figures/margin_figure.h"
 #include "report/figures/set_comparison.h"
 #include "report/figures/study_figures.h"
 #include "report/pages/study_pages.h"
@@ -131,6 +132,7 @@ Result<ExitCode> RunFigureCommand(CommandContext& context, const FigureOptions& 
     figures = FiguresOf(CoursesOf(facts), MapsOf(facts));
     std::ranges::move(ArchiveFigures(facts), std::back_inserter(figures));
     std::ranges::move(FitFigures(facts), std::back_inserter(figures));
+    std::ranges::move(MarginFigures(facts), std::back_inserter(figures));
   } else {
     TRY(shown, ShowRuns(facts, {run}));
     if (const std::string& trouble = shown.front().trouble; !trouble.empty()) {

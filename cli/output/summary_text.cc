@@ -213,7 +213,7 @@ std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const Campaig
   std::vector<NextCommand> commands;
   if (const SearchRow* row = FindSearch(summary.search); row != nullptr && row->varies_settings)
     commands.push_back(
-        {fmt::format("{} fit {}", context.program, directory), "the settings that it has found"});
+        {fmt::format("{} {} {}", context.program, row->command, directory), "what it has found"});
   if (const auto members = Toughest(summary); !members.empty() && !ToughestOf(answers.confirmations)) {
     const PopulationMember& best = *members.front();
     commands.push_back(

@@ -182,8 +182,10 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   facts.plans = campaign.plans;
   TRY(facts.summary, Summarise(facts.plans, store));
   TRY(facts.answers, ReadAnswers(dir));
-  if (RowOf(facts.plans.front().experiment).varies_settings) {
+  if (const SearchRow& row = RowOf(facts.plans.front().experiment); Reads(row.info, "fit.vary")) {
     TRY(facts.fit, ReadFit(dir));
+  } else if (Reads(row.info, "margin.vary")) {
+    TRY(facts.margins, ReadMargins(dir));
   }
   for (const auto question : kQuestions) {
     TRY(auto told, ToldCases(question(), dir));

@@ -11,6 +11,7 @@
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
 #include "study/fits/fit_result.h"
+#include "study/margins/margin_result.h"
 #include "study/questions/confirmations.h"
 #include "study/questions/question.h"
 
@@ -62,6 +63,7 @@ struct CampaignFacts {
   CampaignSummary summary;
   CampaignAnswers answers;
   std::optional<FitResult> fit = std::nullopt;  // that the campaign is
+  std::vector<Margin> margins = {};             // that it looks for
   std::vector<ToldCase> told_cases = {};        // what questions about them say, one question after the other
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each

@@ -12,6 +12,7 @@
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
 #include "report/figures/fit_figure.h"
+#include "report/figures/margin_figure.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
@@ -138,11 +139,15 @@ std::string SearchesHtml(const CampaignSummary& summary) {
                      SearchesTable(summary).ToHtml());
 }
 
-// The settings that were found; what became of single runs is not what a fit is about.
-std::string FitHtml(const CampaignFacts& facts) {
+// What a search over settings has found; what became of single runs is not what it is about.
+std::string SettingsHtml(const CampaignFacts& facts) {
+  const bool fit = facts.fit.has_value();
+  const auto sections = fit ? TellFit(*facts.fit, facts.directory, "gauntlet")
+                            : TellMargins(facts.margins, facts.directory, "gauntlet");
   std::string html;
-  for (const Section& section : TellFit(*facts.fit, facts.directory, "gauntlet")) html += ToHtml(section);
-  for (const NamedFigure& figure : FitFigures(facts)) html += FigureHtml(figure, facts.directory);
+  for (const Section& section : sections) html += ToHtml(section);
+  for (const NamedFigure& figure : fit ? FitFigures(facts) : MarginFigures(facts))
+    html += FigureHtml(figure, facts.directory);
   return html;
 }
 
@@ -158,12 +163,13 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
     for (const std::string& note : facts.notes) html += fmt::format("<li>{}</li>\n", Html(note));
     html += "</ul>\n";
   }
-  html += facts.fit ? FitHtml(facts) : DistinctFailuresHtml(pages, number);
+  const bool of_settings = facts.fit || !facts.margins.empty();
+  html += of_settings ? SettingsHtml(facts) : DistinctFailuresHtml(pages, number);
   html += fmt::format(
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
-  if (!facts.fit) html += CoursesHtml(pages);
+  if (!of_settings) html += CoursesHtml(pages);
   for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(

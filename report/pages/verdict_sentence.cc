@@ -71,6 +71,7 @@ std::string CourseOf(const CampaignPages& pages) {
     return fmt::format("No run gave a result: of {} runs none could be simulated to its end.",
                        FormatCount(summary.runs_done));
   if (facts.fit) return OutcomeOf(*facts.fit);
+  if (!facts.margins.empty()) return OutcomeOf(facts.margins.front());
   if (summary.total_failures == 0) {
     return fmt::format("The {} held out: in none of {} runs did it fail as a whole.{}", SwarmOf(facts),
                        FormatCount(summary.runs_done), Confirmed(facts));

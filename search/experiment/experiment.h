@@ -98,6 +98,13 @@ struct FitSpec {
   std::string search = "genetic";  // of the fitted experiment, in place of the fit
 };
 
+// What a margin is asked for (search/margin).
+struct MarginSpec {
+  std::string vary;    // VariedKey::ToText, of one key
+  int runs = 600;      // at most
+  double share = 0.5;  // of failures, that they are to cross
+};
+
 struct Experiment : sim::RunSettings {
   std::string name;
   std::string description;
@@ -105,6 +112,7 @@ struct Experiment : sim::RunSettings {
   GenomeSpec genome;
   SearchSpec search;
   FitSpec fit;
+  MarginSpec margin;
   std::uint64_t seed = 1;
   StoreSpec store;
 };

@@ -233,6 +233,18 @@ std::vector<Key> FitKeys(const Catalogue& catalogue) {
   return keys;
 }
 
+std::vector<Key> MarginKeys() {
+  constexpr auto kMargin = &Experiment::margin;
+  std::vector<Key> keys = {
+      FieldKey<kMargin, &MarginSpec::vary>("margin.vary", "KEY=LOW..HIGH or KEY=LOW..HIGH:log"),
+      NumberKey<kMargin, &MarginSpec::runs>("margin.runs", "", 1, 1e8, "at most, over all values"),
+      NumberKey<kMargin, &MarginSpec::share>("margin.share", "", 0.01, 0.99,
+                                             "of failing runs, whose crossing is looked for"),
+  };
+  for (Key& key : keys) key.rare = key.came_later = true;
+  return keys;
+}
+
 constexpr double kLeastRectangleSide = controllers::command::kLeastArenaSide;
 
 std::vector<Key> RectangleKeys() {
@@ -319,6 +331,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add({AlgorithmKey(catalogue)}, nullptr);
   add(SearchKeys(catalogue), &Key::of_searches);
   add(FitKeys(catalogue), &Key::of_searches);
+  add(MarginKeys(), &Key::of_searches);
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(
           "store.trajectories",

@@ -47,7 +47,9 @@ Error Wrong(const std::string& text, const std::string& what) {
 }
 
 std::optional<std::string> WhyNot(const Key& key) {
-  if (key.path.starts_with("search.") || key.path.starts_with("fit.")) return "says how is searched";
+  for (const std::string_view of_searches : {"search.", "fit.", "margin."}) {
+    if (key.path.starts_with(of_searches)) return "says how is searched";
+  }
   if (key.type == KeyType::kSeed) return "gives every run its seed";
   if (key.for_people) return "has no influence on a run";
   if (key.type == KeyType::kText) return "is a text";

@@ -59,6 +59,7 @@ enum class SeedPurpose : std::uint32_t {
   kBlame = 7,
   kCheck = 8,
   kFit = 9,
+  kMargin = 10,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.

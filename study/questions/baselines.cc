@@ -27,7 +27,8 @@ Result<QuestionedCampaign> EmptyArenas(const Asking& asking) {
   for (std::size_t i = 0; i < questioned.plans.size(); ++i) {
     SearchPlan& plan = questioned.plans[i];
     if (RowOf(plan.experiment).varies_settings)
-      return InvalidInput(asking.place + ": every setting of a fit has an empty arena of its own");
+      return InvalidInput(asking.place +
+                          ": its runs have different settings, each with an empty arena of its own");
     // Searches that differ in their seeds alone share one.
     plan.experiment.seed = questioned.plans.front().experiment.seed;
     questioned.cases.push_back(

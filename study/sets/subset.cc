@@ -182,10 +182,11 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
 
 Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place) {
   const auto varies = [](const SearchPlan& plan) { return RowOf(plan.experiment).varies_settings; };
-  if (std::ranges::none_of(plans, varies)) return Ok{};
+  const auto one = std::ranges::find_if(plans, varies);
+  if (one == plans.end()) return Ok{};
   return InvalidInput(fmt::format(
-      "{} is a fit: its runs have different settings, so they are neither one set nor cases for other runs",
-      place));
+      "{} is a {}: its runs have different settings, so they are neither one set nor cases for other runs",
+      place, RowOf(one->experiment).command));
 }
 
 Result<OpenedSubset> OpenSubset(const SetPart& part) {

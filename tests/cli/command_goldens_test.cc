@@ -1,8 +1,8 @@
 // What every command prints, held against goldens/ line by line (goldens/README.md).
 // Covers: cli/baseline_run.cc, cli/commands/corpus_command.cc, cli/commands/master_command.cc,
-// cli/commands/question_commands.cc, cli/commands/resume_command.cc, cli/commands/show_command.cc,
-// cli/commands/status_command.cc, cli/commands/stop_command.cc, cli/dry_run.cc, cli/output/output_file.cc,
-// cli/output/standard_output.cc, cli/run_campaign.cc
+// cli/commands/margin_command.cc, cli/commands/question_commands.cc, cli/commands/resume_command.cc,
+// cli/commands/show_command.cc, cli/commands/status_command.cc, cli/commands/stop_command.cc, cli/dry_run.cc,
+// cli/output/output_file.cc, cli/output/standard_output.cc, cli/run_campaign.cc
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

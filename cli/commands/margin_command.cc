@@ -1,0 +1,143 @@
+// gauntlet margin: at which value of a setting does a swarm begin to fail, and how sure is that?
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/number_text.h"
+#include "base/parse_number.h"
+#include "cli/commands.h"
+#include "cli/dry_run.h"
+#include "cli/run_campaign.h"
+#include "master/directory/campaign_directory.h"
+#include "search/search_table.h"
+#include "study/margins/margin_result.h"
+#include "study/questions/chosen_cases.h"
+#include "study/questions/questioned_cases.h"
+
+namespace gauntlet {
+namespace {
+
+struct MarginOptions : LocalOptions {
+  std::vector<std::string> vary;
+  std::string on;
+  std::string budget;
+  std::string share;
+};
+
+// The chosen cases that the swarm can be put into.
+Result<std::vector<sim::TestCase>> CasesOf(CommandContext& context, const MarginOptions& options,
+                                           const Experiment& experiment) {
+  TRY(const ChosenCases chosen, ChooseCases(options.on.empty() ? "random:200" : options.on, experiment));
+  std::vector<sim::TestCase> cases;
+  std::size_t refused = 0;
+  for (const ChosenCases::Group& group : chosen.groups) {
+    for (const sim::TestCase& one : group.cases) {
+      if (RefusalOf(experiment, one)) {
+        ++refused;
+      } else {
+        cases.push_back(one);
+      }
+    }
+  }
+  if (options.running.quiet) return cases;
+  for (const std::string& note : chosen.notes) PrintMessage(context, note);
+  if (refused > 0) PrintMessage(context, Counted(refused, "case") + " left out, as a rule is broken");
+  return cases;
+}
+
+// A search for each key, over the same cases.
+Result<std::vector<SearchPlan>> PlanMargins(CommandContext& context, const MarginOptions& options) {
+  if (options.vary.empty())
+    return InvalidInput("along what? --vary KEY=LOW..HIGH for each key ('gauntlet list' has them all)");
+  std::vector<ExtraSet> extra = {{"margin", "search.algorithm", "margin"},
+                                 {"margin", "search.replicates", "1"}};
+  if (!options.budget.empty()) extra.push_back({"--budget", "margin.runs", options.budget});
+  if (!options.share.empty()) extra.push_back({"--share", "margin.share", options.share});
+  TRY(const Experiment experiment, LoadExperimentWith(options.experiment, extra));
+  TRY(const auto varied, ParseVariedKeys(options.vary, AllKeysOf(experiment), experiment));
+  TRY(const std::vector<sim::TestCase> cases, CasesOf(context, options, experiment));
+  std::vector<SearchPlan> plans;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    const std::string& path = varied[i].key.path;
+    for (const std::string& set : options.experiment.sets) {
+      if (set.starts_with(path + "="))
+        return InvalidInput(
+            fmt::format("{} is given by --set and varied by --vary: leave one of them out", path));
+    }
+    SearchPlan& plan = plans.emplace_back(SearchPlan{"", experiment, cases});
+    plan.experiment.margin.vary = options.vary[i];
+    TRY(MakeSearch(plan.experiment, cases));
+    plan.experiment.margin.vary = varied[i].ToText();
+    if (varied.size() > 1) plan.settings = path;
+  }
+  return plans;
+}
+
+Result<ExitCode> Tell(CommandContext& context, const MarginOptions& options, const std::string& dir) {
+  TRY(const std::vector<Margin> margins, ReadMargins(dir));
+  if (options.running.json) {
+    context.out << MarginJson(margins, dir);
+  } else {
+    for (const Section& section : TellMargins(margins, dir, context.program)) context.out << ToText(section);
+  }
+  context.out << std::flush;
+  return kExitDone;
+}
+
+Result<ExitCode> RunMargin(CommandContext& context, const MarginOptions& options) {
+  const std::string& first = options.experiment.experiment;
+  if (CampaignDirectory::IsCampaign(first)) {
+    if (!options.vary.empty() || !options.on.empty() || !options.budget.empty() || !options.share.empty() ||
+        !options.experiment.sets.empty() || options.dry_run)
+      return InvalidInput(first + " is a campaign: what it looks for is decided, it is told again alone");
+    return Tell(context, options, first);
+  }
+  TRY(const std::vector<SearchPlan> plans, PlanMargins(context, options));
+  TRY(CampaignRun campaign, LocalRun(plans, options));
+  if (options.dry_run) return PrintDryRun(context, campaign, plans);
+  campaign.run = [&](const SessionOptions& session) {
+    return context.campaigns.Start(campaign.directory, plans, session);
+  };
+  ExitCode told = kExitDone;
+  campaign.report = [&](const SessionReport& report) -> Status {
+    if (report.end == CampaignEnd::kStopped) return Ok{};
+    TRY(told, Tell(context, options, campaign.directory));
+    return Ok{};
+  };
+  TRY(const ExitCode code, RunCampaign(context, campaign));
+  return code == kExitDone ? told : code;
+}
+
+}  // namespace
+
+void AddMargin(CommandParser& parser) {
+  const auto [command, options] = parser.Add(
+      "margin", "at which value of a setting do runs begin to fail, and how sure is that?", RunMargin);
+  AddLocalOptions(command, options, /*sizes=*/false);
+  AddValue(command, "--vary", "KEY=RANGE", options.vary,
+           "a number and its range: KEY=LOW..HIGH or KEY=LOW..HIGH:log; repeatable, to rank several");
+  AddValue(
+      command, "--on", "CASES", options.on,
+      "random:N (default: random:200), corpus:DIR or DIR[:SUBSET] of campaigns, as in 'gauntlet compare'");
+  AddValue(command, "--budget", "RUNS", options.budget, "runs along each range, at most (default: 600)");
+  AddValue(command, "--share", "P", options.share,
+           "of failing runs, whose crossing is looked for (default: 0.5)");
+  command.footer(
+      R"(Simulates the same cases with common seeds under different values of one setting, everything else as in the
+experiment, first at six values over the range and then in stages of 40 runs where failures cross the share. It
+assumes that failures only become more frequent along the range, or only rarer, and nothing else of the curve's
+form. The value at which they cross comes with a 95 % interval: every value that a likelihood-ratio test does not
+reject, with the cases as the units. 'Above' or 'below' the share everywhere is an answer too.
+
+Several keys are ranked by the part of its range that each can take before failures cross the share, so that the
+ranges which are given decide; keys whose intervals overlap share a rank. Noise of a device that the controller's
+robots do not have is refused. In place of EXPERIMENT may stand the directory of such a campaign, to tell it
+again.
+
+Examples:
+  gauntlet margin flocking --vary noise.omnidirectional_camera.drop=0..0.5
+  gauntlet margin flocking --vary noise.proximity.gaussian=0..0.5 --vary noise.wheels.gaussian=0..0.5
+  gauntlet margin flocking --vary scenario_parameters.birds=3..15 --on corpus:corpus --budget 1200
+  gauntlet margin my.toml --vary controller_parameters.turn_rate=0.1..10:log --share 0.2 --json)");
+}
+
+}  // namespace gauntlet
