@@ -1,5 +1,6 @@
 #include "controllers/run_start.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -66,13 +67,16 @@ Result<sim::RunStart> StartOf(const sim::RunSpec& spec) {
   return std::move(beginning.start);
 }
 
-Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
+Result<sim::SwarmSize> CountSwarm(const sim::RunSpec& spec) {
   constexpr std::uint64_t kSeeds = 5;
   const std::uint64_t first = ElsewhereOf(spec) == nullptr ? spec.seed : kAnySeed;
   Error error;
   for (std::uint64_t i = 0; i < kSeeds; ++i) {
     const Result<sim::RunStart> start = StartOf(WithSeed(spec, first + i));
-    if (start.ok()) return start->robots.size();
+    if (start.ok()) {
+      const auto tested = std::ranges::count(start->robots, true, &sim::StartingRobot::under_test);
+      return sim::SwarmSize{.robots = start->robots.size(), .under_test = static_cast<std::size_t>(tested)};
+    }
     error = start.error();
   }
   return error;

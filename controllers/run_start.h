@@ -2,8 +2,6 @@
 // brings, a master asks another process (PluginInfo::begin).
 #pragma once
 
-#include <cstddef>
-
 #include "base/result.h"
 #include "sim/run_spec.h"
 #include "sim/run_start.h"
@@ -18,11 +16,11 @@ Result<sim::ArenaRequirements> RequirementsOf(const sim::RunSpec& spec);
 // arena ("no-room-to-spawn: ...").
 Result<sim::RunStart> StartOf(const sim::RunSpec& spec);
 
-// The number of robots of the spec's swarm, provided that it can be put into the arena at all. Start places
+// The size of the spec's swarm, provided that it can be put into the arena at all. Start places
 // are random, so a few seeds are tried, and one that works is enough: from the spec's on, or, of a scenario
 // that a plug-in brings, the same ones for all specs, so that one answer does for those that differ in their
 // seed alone. Error: as StartOf, of the last try.
-Result<std::size_t> CountSwarm(const sim::RunSpec& spec);
+Result<sim::SwarmSize> CountSwarm(const sim::RunSpec& spec);
 
 // Both answers at once, from the scenario's row in this process. Error: as RequirementsOf.
 Result<sim::RunBeginning> BeginningOf(const sim::RunSpec& spec);

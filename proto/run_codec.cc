@@ -70,6 +70,13 @@ void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
     if (fault.device) written.set_device(sim::KeyOf(*fault.device));
     written.set_tick(fault.tick);
   }
+  const sim::RandomFaults& random = disturbances.random_faults;
+  if (random.count == 0) return;
+  v1::RandomFaults& written = *message.mutable_random_faults();
+  written.set_count(random.count);
+  if (random.device) written.set_device(sim::KeyOf(*random.device));
+  written.set_tick(random.tick);
+  written.set_also_of_scenario(random.role == sim::FaultyRole::kAll);
 }
 
 template <typename Repeated>
@@ -227,6 +234,13 @@ sim::PhysicsKind PhysicsOf(v1::Physics wire) {
   return sim::PhysicsKind::kBox2d;
 }
 
+// Of a fault; nothing is the whole robot.
+std::optional<sim::Device> ReadFaulty(const std::string& device, SpecReader& reader) {
+  const std::optional<sim::Device> known = sim::DeviceOfKey(device);
+  reader.Require(known || device.empty(), fmt::format("a fault of '{}', which is no device", device));
+  return known;
+}
+
 sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) {
   sim::Disturbances disturbances;
   for (const v1::DeviceNoise& noise : wire.noise()) {
@@ -246,11 +260,17 @@ sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) 
   if (!reader.ok()) return disturbances;
   for (const v1::RobotFault& fault : wire.faults()) {
     reader.RequireKnownFields(fault, "fault");
-    const std::optional<sim::Device> device = sim::DeviceOfKey(fault.device());
-    reader.Require(device || fault.device().empty(),
-                   fmt::format("a fault of '{}', which is no device", fault.device()));
-    disturbances.faults.push_back({.robot = fault.robot(), .device = device, .tick = fault.tick()});
+    disturbances.faults.push_back(
+        {.robot = fault.robot(), .device = ReadFaulty(fault.device(), reader), .tick = fault.tick()});
   }
+  if (!wire.has_random_faults()) return disturbances;
+  const v1::RandomFaults& random = wire.random_faults();
+  reader.RequireKnownFields(random, "random_faults");
+  disturbances.random_faults = {
+      .count = random.count(),
+      .device = ReadFaulty(random.device(), reader),
+      .tick = random.tick(),
+      .role = random.also_of_scenario() ? sim::FaultyRole::kAll : sim::FaultyRole::kTested};
   return disturbances;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "search/experiment/disturbance_keys.h"
 #include "search/search_row.h"
 #include "sim/arena/genome.h"
 
@@ -76,6 +77,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
   const auto matters = [&](const Key& key) {
     if (key.for_people || key.path == search.length) return false;
     if (key.of_searches && !Reads(search, key.path)) return false;
+    if (NobodyIsDrawn(experiment, key.path)) return false;
     return !key.came_later || key.get(experiment) != key.default_value;
   };
   std::string identity = fmt::format("search = {}\n", kSearchNumber);

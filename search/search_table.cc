@@ -90,8 +90,8 @@ sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& ev
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
-  TRY(const auto robots, controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed)));
-  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, robots)) {
+  TRY(const auto swarm, controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed)));
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, swarm)) {
     return InvalidInput(*refused);
   }
   return Ok{};

@@ -1,5 +1,6 @@
 #include "sim/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -110,6 +111,12 @@ std::vector<bool> Equipped(const std::vector<RobotSetup>& swarm, Device device) 
   return equipped;
 }
 
+std::vector<bool> UnderTest(const std::vector<RobotSetup>& swarm) {
+  std::vector<bool> under_test;
+  for (const RobotSetup& robot : swarm) under_test.push_back(robot.under_test);
+  return under_test;
+}
+
 Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
            const SimulationOptions& options)
     : scenario_(scenario),
@@ -139,7 +146,7 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
     swarm_[i].controller->Begin(actuators_[i]);
     poses_[i] = swarm_[i].pose;
   }
-  if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, swarm_.size());
+  if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, UnderTest(swarm_));
 }
 
 void Loop::Start() {
@@ -327,11 +334,13 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   if (!swarm.ok()) return Refusal(swarm.error().message);
   if (std::optional<std::string> reason = RefuseSwarm(scenario.arena(), *swarm))
     return Refusal(*std::move(reason));
-  if (std::optional<std::string> reason = RefuseDisturbances(options.disturbances, swarm->size())) {
+  const std::size_t robots = swarm->size();
+  const auto tested = static_cast<std::size_t>(std::ranges::count(*swarm, true, &RobotSetup::under_test));
+  if (std::optional<std::string> reason =
+          RefuseDisturbances(options.disturbances, {.robots = robots, .under_test = tested})) {
     return Refusal(*std::move(reason));
   }
 
-  const std::size_t robots = swarm->size();
   observer = Observer(static_cast<int>(robots), scenario.tick_limit(), scenario.arena().moving().size());
   Loop loop(scenario, *std::move(swarm), seed, observer, options);
   loop.Start();

@@ -17,6 +17,7 @@
 #include "cli/baseline_run.h"
 #include "cli/commands.h"
 #include "cli/dry_run.h"
+#include "cli/options/sweep.h"
 #include "cli/output/output_file.h"
 #include "cli/run_campaign.h"
 #include "master/directory/campaign_directory.h"
@@ -31,6 +32,7 @@ using Kind = QuestionOption::Kind;
 
 struct QuestionOptions : LocalOptions {
   Question question;
+  SweepOptions sweep;
   std::string place;
   std::vector<std::string> cases;
   std::string other;                                       // a second experiment
@@ -39,8 +41,8 @@ struct QuestionOptions : LocalOptions {
   std::map<std::string, std::vector<std::string>> values;  // likewise
 };
 
-// An experiment that a new campaign is of.
-Result<Experiment> ExperimentOf(const QuestionOptions& options, const ExperimentOptions& experiment) {
+// Settings of the experiments that a new campaign is of.
+Result<std::vector<ExtraSet>> ExtraOf(const QuestionOptions& options) {
   const Question& question = options.question;
   for (const ExtraSet& size : SetsOf(options.size)) {
     return InvalidInput(fmt::format("{} {}: '{}' searches nothing; the runs per case are --replicates K",
@@ -52,7 +54,7 @@ Result<Experiment> ExperimentOf(const QuestionOptions& options, const Experiment
     if (*option.sets != '\0' && given != options.values.end() && !given->second.empty())
       extra.push_back({option.name, option.sets, given->second.back()});
   }
-  return LoadExperimentWith(experiment, extra);
+  return extra;
 }
 
 // The second one: nothing where none is named.
@@ -61,7 +63,8 @@ Result<std::optional<Experiment>> OtherOf(const QuestionOptions& options) {
   ExperimentOptions other = options.experiment;
   if (!options.other.empty()) other.experiment = options.other;
   other.sets.insert(other.sets.end(), options.other_sets.begin(), options.other_sets.end());
-  TRY(auto loaded, ExperimentOf(options, other));
+  TRY(const std::vector<ExtraSet> extra, ExtraOf(options));
+  TRY(auto loaded, LoadExperimentWith(other, extra));
   return std::optional(std::move(loaded));
 }
 
@@ -85,7 +88,13 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
     asking.place = first;
     return asking;
   }
-  TRY(asking.experiment, ExperimentOf(options, options.experiment));
+  TRY(const std::vector<ExtraSet> extra, ExtraOf(options));
+  if (options.question.sweeps) {
+    TRY(asking.experiments, PlanSearches(options.experiment, extra, options.sweep));
+    asking.experiment = asking.experiments.front().experiment;
+    return asking;
+  }
+  TRY(asking.experiment, LoadExperimentWith(options.experiment, extra));
   TRY(asking.other, OtherOf(options));
   if (asking.other) asking.other->seed = asking.experiment.seed;
   return asking;
@@ -225,6 +234,7 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
 void AddPlace(CLI::App& command, const Question& question, QuestionOptions& options) {
   if (question.place == Place::kNewCampaign) {
     AddLocalOptions(command, options, /*sizes=*/false);
+    if (question.sweeps) AddSweepOptions(command, options.sweep, "random_faults.count=0,2,4");
     if (*question.other == '\0') return;
     command.add_option("OTHER", options.other, question.other);
     AddValue(command, "--set-b", "KEY=VALUE", options.other_sets,

@@ -105,11 +105,11 @@ void AddSizeOptions(CLI::App& command, SizeOptions& options) {
   AddValue(command, "--population", "P", options.population, "short for --set search.population=P");
 }
 
-void AddSweepOptions(CLI::App& command, SweepOptions& options) {
-  AddValue(
-      command, "--sweep", "KEY=A,B,...", options.sweeps,
-      "one search for each value, e.g. --sweep search.population=10,20,40; if repeated, one search for each "
-      "combination");
+void AddSweepOptions(CLI::App& command, SweepOptions& options, const std::string& example) {
+  AddValue(command, "--sweep", "KEY=A,B,...", options.sweeps,
+           ("one search for each value, e.g. --sweep " + example +
+            "; if repeated, one search for each combination")
+               .c_str());
   AddValue(command, "--seeds", "1..20|1,5,9", options.seeds,
            "one search for each seed; with --sweep, for each combination and seed");
 }

@@ -83,7 +83,9 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
 // Libraries of plug-ins.
 void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void AddSizeOptions(CLI::App& command, SizeOptions& options);
-void AddSweepOptions(CLI::App& command, SweepOptions& options);
+// `example`: of a sweep, "key=a,b,c".
+void AddSweepOptions(CLI::App& command, SweepOptions& options,
+                     const std::string& example = "search.population=10,20,40");
 void AddSlurmOptions(CLI::App& command, SlurmOptions& options);
 // `sizes`: else those of size are not in the command's help, and are read so that it can say why it refuses
 // them.

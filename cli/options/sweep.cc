@@ -140,6 +140,24 @@ Status CheckSettings(const std::vector<ExtraSet>& settings, const std::vector<Se
   return Ok{};
 }
 
+// Given cases are simulated as these settings say, and all others would only repeat the runs.
+Status CheckDifferent(const std::vector<SearchPlan>& plans) {
+  const auto same = [](const Experiment& one, const Experiment& other) {
+    return static_cast<const sim::RunSettings&>(one) == other && one.seed == other.seed &&
+           one.search.replicates == other.search.replicates;
+  };
+  for (std::size_t i = 1; i < plans.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!same(plans[j].experiment, plans[i].experiment)) continue;
+      return InvalidInput(fmt::format(
+          "'{}' and '{}' would be the same runs of the given cases: sweep what runs depend on, such as "
+          "parameters, physics, noise and faults",
+          plans[j].settings, plans[i].settings));
+    }
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
@@ -150,6 +168,7 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   TRY(const std::vector<std::uint64_t> seeds, ParseSeeds(sweep.seeds));
   TRY(CheckNumber(sweeps, seeds));
 
+  const bool chosen = std::ranges::count(extra, "search.algorithm", &ExtraSet::key) > 0;
   std::vector<SearchPlan> plans;
   for (const std::vector<ExtraSet>& combination : Combinations(sweeps)) {
     std::vector<ExtraSet> all = extra;
@@ -159,7 +178,7 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
       all.push_back(set);
     }
     TRY(const Experiment experiment, LoadExperimentWith(options, all));
-    if (RowOf(experiment).given_cases())
+    if (!chosen && RowOf(experiment).given_cases())
       return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
                                       experiment.search.algorithm, RowOf(experiment).command));
     plan.experiment = experiment;
@@ -176,6 +195,9 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   for (const Sweep& one : sweeps)
     settings.push_back({"--sweep", one.key, fmt::format("{}={}", one.key, fmt::join(one.values, ","))});
   TRY(CheckSettings(settings, plans));
+  if (RowOf(plans.front().experiment).given_cases()) {
+    TRY(CheckDifferent(plans));
+  }
   if (plans.size() == 1) plans.front().settings.clear();
   return plans;
 }

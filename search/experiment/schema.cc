@@ -12,11 +12,11 @@
 #include "base/system/sha256.h"
 #include "controllers/command/definition.h"
 #include "controllers/command/requirements.h"
+#include "search/experiment/disturbance_keys.h"
 #include "search/experiment/genome_ranges.h"
 #include "search/experiment/objective.h"
 #include "sim/arena/color.h"
 #include "sim/arena/validity.h"
-#include "sim/robot/disturbances.h"
 
 namespace gauntlet {
 namespace {
@@ -37,15 +37,6 @@ template <auto... Path>
 Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
               const std::string& description) {
   return gauntlet::ChoiceKey<Experiment, Path...>(path, choices, description);
-}
-
-// A key without access to its place yet.
-Key MakeKey(const std::string& path, KeyType type, const std::string& description) {
-  Key key;
-  key.path = path;
-  key.type = type;
-  key.description = description;
-  return key;
 }
 
 Key ForPeople(Key key) {
@@ -70,7 +61,7 @@ Key PhysicsKey() {
 }
 
 Key ObjectiveKey() {
-  Key key = MakeKey(
+  Key key(
       "search.objective", KeyType::kChoice,
       "what is searched for: low fitness, short obstacles that make the swarm fail, or frequent failures");
   key.choices.assign(kObjectiveNames.begin(), kObjectiveNames.end());
@@ -86,65 +77,13 @@ Key ObjectiveKey() {
 }
 
 Key LightColorKey() {
-  Key key =
-      MakeKey("genome.light_color", KeyType::kChoice, "of those lights; birds are red, their prey is blue");
+  Key key("genome.light_color", KeyType::kChoice, "of those lights; birds are red, their prey is blue");
   key.choices.assign(sim::kColorNames.begin() + 1, sim::kColorNames.end());  // black is no light
   key.get = [](const Experiment& e) -> KeyValue { return std::string(sim::NameOf(e.genome.light_color)); };
   key.set = [](Experiment& e, const KeyValue& v) {
     e.genome.light_color = *sim::ColorNamed(std::get<std::string>(v));
   };
   return key;
-}
-
-Key FaultsKey() {
-  Key key =
-      MakeKey("faults", KeyType::kText,
-              "ROBOT:WHAT@TICK, with spaces between several: 3:wheels@500 9:stopped@0; WHAT is a device or "
-              "'stopped'");
-  key.get = [](const Experiment& e) -> KeyValue { return sim::FaultsText(e.disturbances.faults); };
-  key.set = [](Experiment& e, const KeyValue& v) {
-    e.disturbances.faults = *sim::ParseFaults(std::get<std::string>(v));
-  };
-  key.check = [](const KeyValue& v) -> std::optional<std::string> {
-    const auto faults = sim::ParseFaults(std::get<std::string>(v));
-    if (faults.ok()) return std::nullopt;
-    return "faults: " + faults.error().message;
-  };
-  return key;
-}
-
-// "noise.proximity.gaussian": one number of one device.
-Key NoiseKey(const sim::DeviceInfo& noisy, const std::string& name, double sim::DeviceNoise::*member,
-             const std::string& description) {
-  Key key =
-      MakeKey(fmt::format("noise.{}.{}", sim::KeyOf(noisy.device), name), KeyType::kNumber, description);
-  key.max = noisy.most_noise;
-  key.unit = noisy.noise_unit;
-  key.get = [device = noisy.device, member](const Experiment& e) -> KeyValue {
-    const auto found = e.disturbances.noise.find(device);
-    return found == e.disturbances.noise.end() ? 0.0 : found->second.*member;
-  };
-  key.set = [device = noisy.device, member](Experiment& e, const KeyValue& v) {
-    e.disturbances.noise[device].*member = std::get<double>(v);
-    if (!e.disturbances.noise[device].Any()) e.disturbances.noise.erase(device);
-  };
-  return key;
-}
-
-std::vector<Key> NoiseKeys() {
-  std::vector<Key> keys;
-  for (const sim::DeviceInfo& noisy : sim::kDevices) {
-    if (noisy.most_noise == 0.0) continue;
-    keys.push_back(NoiseKey(noisy, "uniform", &sim::DeviceNoise::uniform,
-                            fmt::format("half width of a uniform error {}", noisy.noise_error)));
-    keys.push_back(NoiseKey(noisy, "gaussian", &sim::DeviceNoise::gaussian,
-                            "standard deviation of a Gaussian one, likewise"));
-    if (!noisy.drops) continue;
-    keys.push_back(NoiseKey(noisy, "drop", &sim::DeviceNoise::drop, "probability that one is not received"));
-    keys.back().max = 1.0;
-    keys.back().unit = "";
-  }
-  return keys;
 }
 
 Key AlgorithmKey(const Catalogue& catalogue) {
@@ -332,6 +271,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add(SearchKeys(catalogue), &Key::of_searches);
   add(FitKeys(catalogue), &Key::of_searches);
   add(MarginKeys(), &Key::of_searches);
+  add(RandomFaultKeys(), &Key::disturbs);
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(
           "store.trajectories",

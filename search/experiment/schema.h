@@ -17,13 +17,20 @@ namespace gauntlet {
 
 struct Key : SettingsKey<Experiment> {
   Key() = default;
+  // Without access to its place yet.
+  Key(const std::string& its_path, KeyType its_type, const std::string& its_description) {
+    path = its_path;
+    type = its_type;
+    description = its_description;
+  }
   Key(SettingsKey<Experiment> key) : SettingsKey<Experiment>(std::move(key)) {}
 
   bool for_people = false;   // has no influence on any run
   bool of_searches = false;  // has none where the search does not read it (Reads)
-  bool disturbs = false;     // says what is wrong with robots: "faults", "noise.DEVICE.NAME"
-  bool came_later = false;   // than stored campaigns: left out of identities where it has its default
-  bool rare = false;         // not written where it has its default and the search does not read it
+  bool disturbs =
+      false;  // says what is wrong with robots: "faults", "random_faults.NAME", "noise.DEVICE.NAME"
+  bool came_later = false;  // than stored campaigns: left out of identities where it has its default
+  bool rare = false;        // not written where it has its default and the search does not read it
 };
 
 // A broken rule that concerns more than one key, and the key to point at.

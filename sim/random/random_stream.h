@@ -21,6 +21,7 @@ enum class StreamPurpose : std::uint32_t {
   kTest = 6,
   kStatistics = 7,         // bootstrap
   kFirstDeviceNoise = 16,  // to 47: one for each device (sim/robot/disturber.h)
+  kFaultyRobots = 48,
 };
 
 // Draws from one stream. Copying copies the position. Not for sharing between threads.

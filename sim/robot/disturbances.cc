@@ -11,16 +11,9 @@ namespace gauntlet::sim {
 namespace {
 
 constexpr std::string_view kStopped = "stopped";
-constexpr Tick kLatestFault = 1'000'000'000;
 constexpr RobotIndex kLastRobot = kMaxRobots - 1;
 constexpr std::pair<const char*, double DeviceNoise::*> kNoiseValues[] = {
     {"uniform", &DeviceNoise::uniform}, {"gaussian", &DeviceNoise::gaussian}, {"drop", &DeviceNoise::drop}};
-
-std::vector<std::string_view> FaultNames() {
-  std::vector<std::string_view> names = {kStopped};
-  for (const DeviceInfo& info : kDevices) names.push_back(info.key);
-  return names;
-}
 
 Error WrongFault(std::string_view fault, const std::string& why) {
   std::string message = "'";
@@ -54,10 +47,10 @@ Result<RobotFault> ParseFault(std::string_view text) {
   if (what == kStopped) return fault;
   fault.device = DeviceOfKey(what);
   if (fault.device) return fault;
-  const std::vector<std::string_view> names = FaultNames();
-  const std::string nearest = NearestName(what, names);
+  const std::vector<std::string> names = FaultNames();
+  const std::string nearest = NearestName(what, std::vector<std::string_view>(names.begin(), names.end()));
   std::string known;
-  for (const std::string_view name : names) known.append(known.empty() ? "" : ", ").append(name);
+  for (const std::string& name : names) known.append(known.empty() ? "" : ", ").append(name);
   std::string why = "no device is called '";
   why.append(what).append("'; ");
   if (nearest.empty()) return WrongFault(text, why.append("known: ").append(known));
@@ -65,9 +58,7 @@ Result<RobotFault> ParseFault(std::string_view text) {
 }
 
 std::string FaultText(const RobotFault& fault) {
-  std::string text = std::to_string(fault.robot) + ":";
-  text.append(fault.device ? KeyOf(*fault.device) : kStopped);
-  return text.append("@").append(std::to_string(fault.tick));
+  return std::to_string(fault.robot) + ":" + FaultName(fault.device) + "@" + std::to_string(fault.tick);
 }
 
 std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) {
@@ -83,7 +74,30 @@ std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) 
   return std::nullopt;
 }
 
+std::optional<std::string> RefuseRandomFaults(const RandomFaults& random, const SwarmSize& swarm) {
+  if (random.count == 0) return std::nullopt;
+  const bool tested = random.role == FaultyRole::kTested;
+  const std::size_t robots = tested ? swarm.under_test : swarm.robots;
+  if (random.count < 0 || static_cast<std::size_t>(random.count) > robots) {
+    return "bad-fault: random_faults.count = " + std::to_string(random.count) + "; this swarm has " +
+           std::to_string(robots) + (tested ? " robots under test, so 0 to " : " robots, so 0 to ") +
+           std::to_string(robots) + " of them may be faulty";
+  }
+  if (random.tick >= 0) return std::nullopt;
+  return "bad-fault: random_faults.tick = " + std::to_string(random.tick) + "; ticks count from 0";
+}
+
 }  // namespace
+
+std::vector<std::string> FaultNames() {
+  std::vector<std::string> names = {std::string(kStopped)};
+  for (const DeviceInfo& info : kDevices) names.emplace_back(info.key);
+  return names;
+}
+
+std::string FaultName(std::optional<Device> device) {
+  return device ? KeyOf(*device) : std::string(kStopped);
+}
 
 Result<std::vector<RobotFault>> ParseFaults(std::string_view text) {
   std::vector<RobotFault> faults;
@@ -113,22 +127,28 @@ std::vector<std::pair<std::string, std::string>> DisturbanceTexts(const Disturba
     }
   }
   if (!disturbances.faults.empty()) texts.emplace_back("faults", FaultsText(disturbances.faults));
+  const RandomFaults& random = disturbances.random_faults;
+  if (random.count == 0) return texts;
+  texts.emplace_back("random_faults.count", std::to_string(random.count));
+  texts.emplace_back("random_faults.what", FaultName(random.device));
+  texts.emplace_back("random_faults.tick", std::to_string(random.tick));
+  texts.emplace_back("random_faults.role", kFaultyRoles.at(static_cast<std::size_t>(random.role)));
   return texts;
 }
 
-std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, std::size_t robots) {
+std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, const SwarmSize& swarm) {
   for (const auto& [device, noise] : disturbances.noise) {
     if (std::optional<std::string> reason = RefuseNoise(device, noise)) return reason;
   }
   for (const RobotFault& fault : disturbances.faults) {
-    if (fault.robot >= 0 && static_cast<std::size_t>(fault.robot) < robots && fault.tick >= 0) {
+    if (fault.robot >= 0 && static_cast<std::size_t>(fault.robot) < swarm.robots && fault.tick >= 0) {
       continue;
     }
     return "bad-fault: " + FaultText(fault) + ": robot " + std::to_string(fault.robot) + ", tick " +
-           std::to_string(fault.tick) + "; this swarm has robots 0 to " + std::to_string(robots - 1) +
+           std::to_string(fault.tick) + "; this swarm has robots 0 to " + std::to_string(swarm.robots - 1) +
            ", ticks count from 0";
   }
-  return std::nullopt;
+  return RefuseRandomFaults(disturbances.random_faults, swarm);
 }
 
 }  // namespace gauntlet::sim

@@ -2,6 +2,8 @@
 // ignores both (3.3.2) and so does every shipped experiment; without them they cost nothing.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <span>
@@ -39,13 +41,35 @@ struct RobotFault {
   bool operator==(const RobotFault&) const = default;
 };
 
+// Of which robots those are drawn that have a random fault.
+enum class FaultyRole { kTested, kAll };  // of the controller under test; also those of the scenario
+
+// So many robots of each run have this fault. The run's seed decides which (DrawFaults).
+struct RandomFaults {
+  int count = 0;
+  std::optional<Device> device = std::nullopt;  // nothing: the whole robot
+  Tick tick = 0;
+  FaultyRole role = FaultyRole::kTested;
+
+  bool operator==(const RandomFaults&) const = default;
+};
+
 struct Disturbances {
   std::map<Device, DeviceNoise> noise = {};  // only devices with some
   std::vector<RobotFault> faults = {};
+  RandomFaults random_faults = {};  // beside those
 
-  bool None() const { return noise.empty() && faults.empty(); }
+  bool None() const { return noise.empty() && faults.empty() && random_faults.count == 0; }
   bool operator==(const Disturbances&) const = default;
 };
+
+// The latest tick that a fault may begin at.
+inline constexpr Tick kLatestFault = 1'000'000'000;
+// What may fail: "stopped", which is the whole robot, and the keys of all devices.
+std::vector<std::string> FaultNames();
+std::string FaultName(std::optional<Device> device);
+// As an experiment calls it: "tested", "all".
+inline constexpr std::array<const char*, 2> kFaultyRoles = {"tested", "all"};
 
 // "3:wheels@500 7:stopped@0": ROBOT:WHAT@TICK, several with spaces between them. WHAT is a device or
 // `stopped`. Error: what is malformed, unknown (with the nearest known name) or out of range.
@@ -56,8 +80,11 @@ std::string FaultsText(std::span<const RobotFault> faults);
 // "3:wheels@500"}.
 std::vector<std::pair<std::string, std::string>> DisturbanceTexts(const Disturbances& disturbances);
 
-// What of these disturbances cannot be simulated with so many robots, naming robot, tick and value, or
-// nothing.
-std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, std::size_t robots);
+struct SwarmSize {
+  std::size_t robots = 0;
+  std::size_t under_test = 0;  // of these, of the controller under test
+};
+// What of these disturbances cannot be simulated with such a swarm, naming robot, tick and value, or nothing.
+std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, const SwarmSize& swarm);
 
 }  // namespace gauntlet::sim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/check.h"
 
@@ -23,11 +24,34 @@ void DeviceErrors::AddTo(std::span<double> readings) {
   for (double& reading : readings) reading = std::clamp(reading + Draw(), 0.0, 1.0);
 }
 
-Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::size_t robots)
-    : seed_(seed), stopped_(robots, kNever), dead_(robots) {
+std::vector<RobotFault> DrawFaults(const RandomFaults& random, const std::vector<bool>& under_test,
+                                   std::uint64_t seed) {
+  std::vector<RobotIndex> robots;
+  for (std::size_t i = 0; i < under_test.size(); ++i) {
+    if (random.role == FaultyRole::kAll || under_test[i]) robots.push_back(static_cast<RobotIndex>(i));
+  }
+  const auto count = static_cast<std::size_t>(random.count);
+  GAUNTLET_CHECK(count <= robots.size(), "more faulty robots than there are");
+  RandomStream stream(seed, StreamPurpose::kFaultyRobots);
+  for (std::size_t i = 0; i < count; ++i)
+    std::swap(robots[i], robots[i + stream.Below(static_cast<std::uint32_t>(robots.size() - i))]);
+  robots.resize(count);
+  std::ranges::sort(robots);
+  std::vector<RobotFault> faults;
+  for (const RobotIndex robot : robots)
+    faults.push_back({.robot = robot, .device = random.device, .tick = random.tick});
+  return faults;
+}
+
+Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed,
+                     const std::vector<bool>& under_test)
+    : seed_(seed), stopped_(under_test.size(), kNever), dead_(under_test.size()) {
+  const std::size_t robots = under_test.size();
   for (PerDevice& ticks : dead_) ticks.fill(kNever);
   for (const auto& [device, noise] : disturbances.noise) noise_[IndexOf(device)] = noise;
-  for (const RobotFault& fault : disturbances.faults) {
+  std::vector<RobotFault> faults = DrawFaults(disturbances.random_faults, under_test, seed);
+  faults.insert(faults.end(), disturbances.faults.begin(), disturbances.faults.end());
+  for (const RobotFault& fault : faults) {
     const std::size_t robot = Index(fault.robot);
     GAUNTLET_CHECK(robot < robots, "a fault of a robot that is not there");
     Tick& dead = fault.device ? dead_[robot][IndexOf(*fault.device)] : stopped_[robot];

@@ -44,10 +44,17 @@ class DeviceErrors {
   RandomStream random_;
 };
 
+// The faults of different robots that a run's seed draws, each of the role's robots as likely as another, in
+// the order of the robots. `under_test`: per robot, whether it is of the controller under test; of the role
+// there are as many as are drawn or more.
+std::vector<RobotFault> DrawFaults(const RandomFaults& random, const std::vector<bool>& under_test,
+                                   std::uint64_t seed);
+
 class Disturber {
  public:
-  // Disturbances that RefuseDisturbances lets pass. Afterwards nothing is allocated.
-  Disturber(const Disturbances& disturbances, std::uint64_t seed, std::size_t robots);
+  // Disturbances that RefuseDisturbances lets pass; `under_test` as for DrawFaults. Afterwards nothing is
+  // allocated.
+  Disturber(const Disturbances& disturbances, std::uint64_t seed, const std::vector<bool>& under_test);
 
   // The whole robot is dead in this tick.
   bool Stopped(RobotIndex robot, Tick tick) const { return tick >= stopped_[Index(robot)]; }

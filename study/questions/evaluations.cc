@@ -23,6 +23,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRows = 40;  // that are printed; JSON has all
 
+// Whether the cases are simulated under several settings.
+bool Swept(const Asking& asking) {
+  return asking.experiments.size() > 1;
+}
+
 // The next case of the call, which what speaks against it keeps out of its search.
 CaseAnswer& AddCase(std::string name, Call& call) {
   return call.cases.emplace_back(CaseAnswer{.name = std::move(name), .search = call.searches.size() - 1});
@@ -39,21 +44,29 @@ void Simulate(CaseAnswer& one, sim::TestCase test_case, Call& call) {
 }
 
 Call CasesOfFiles(const Asking& asking) {
-  Call call{.searches = {{"", asking.experiment}}};
   std::map<std::string, std::vector<std::string>> notices;  // and the files they are about
+  std::vector<std::pair<std::string, Result<LoadedCase>>> all;
   for (const std::string& file : asking.Values("--case")) {
-    CaseAnswer& one = AddCase(file, call);
-    Result<LoadedCase> loaded = LoadCase(file);
-    if (!loaded) {
-      one.refused = loaded.error().message;
-      continue;
-    }
+    Result<LoadedCase>& loaded = all.emplace_back(file, LoadCase(file)).second;
+    if (!loaded) continue;
     if (!loaded->notice.empty()) notices[loaded->notice].push_back(file);
     // `show` knows the case by its file, and by what the file calls it.
     const std::string file_name = std::filesystem::path(file).filename().string();
     if (std::string& name = loaded->test_case.name; name != file_name)
       name = fmt::format("{} ({})", file_name, name);
-    Simulate(one, std::move(loaded->test_case), call);
+  }
+  Call call;
+  for (const SearchPlan& plan : asking.experiments) {
+    call.searches.push_back(plan);
+    for (const auto& [file, loaded] : all) {
+      CaseAnswer& one = AddCase(file, call);
+      if (loaded.ok()) {
+        Simulate(one, loaded->test_case, call);
+      } else {
+        one.refused = loaded.error().message;
+      }
+    }
+    if (call.searches.back().cases.empty()) call.searches.pop_back();
   }
   if (asking.quiet) return call;
   for (const auto& [notice, files] : notices) {
@@ -63,11 +76,16 @@ Call CasesOfFiles(const Asking& asking) {
   return call;
 }
 
-// What distinguishes runs of the experiment from those that the cases come from, as far as the swarm's task
-// goes; "" = nothing.
-std::string OtherTask(const Experiment& there, const Experiment& here) {
+// What distinguishes runs of the experiments from those that the cases come from, as far as the swarm's task
+// goes and they are all alike; "" = nothing.
+std::string OtherTask(const Experiment& there, const std::vector<SearchPlan>& here) {
   std::string differences;
-  for (const auto& [name, value] : here.scenario_parameters) {
+  for (const auto& [name, value] : here.front().experiment.scenario_parameters) {
+    const auto differs = [&name = name, &value = value](const SearchPlan& plan) {
+      const sim::Parameters& parameters = plan.experiment.scenario_parameters;
+      return !parameters.contains(name) || parameters.at(name) != value;
+    };
+    if (std::ranges::any_of(here, differs)) continue;
     const auto other = there.scenario_parameters.find(name);
     if (other == there.scenario_parameters.end() || other->second == value) continue;
     differences +=
@@ -77,19 +95,19 @@ std::string OtherTask(const Experiment& there, const Experiment& here) {
 }
 
 // One search for each of the campaigns' searches, so that relatives stay together.
-Result<Call> CasesOfCampaigns(const Asking& asking) {
-  const Experiment& experiment = asking.experiment;
-  TRY(const std::vector<CaseSet> sets, ReadCaseSets(asking.Value("--from")));
-  Call call;
+Status AddSearchesOf(const std::vector<CaseSet>& sets, const SearchPlan& asked, Call& call) {
+  const Experiment& experiment = asked.experiment;
+  const std::size_t first = call.searches.size();
   for (const CaseSet& set : sets) {
     if (set.experiment.scenario != experiment.scenario) {
       return InvalidInput(
           fmt::format("--from {}: its cases are of the scenario '{}', the experiment {} has '{}'", set.place,
                       set.experiment.scenario, experiment.name, experiment.scenario));
     }
-    SearchPlan plan{sets.size() > 1 ? set.place : "", experiment};
+    SearchPlan plan = asked;
+    if (sets.size() > 1) plan.settings = set.place + (asked.settings.empty() ? "" : ", ") + asked.settings;
     if (RowOf(set.experiment).Related()) plan.experiment.search.algorithm = "resimulation";
-    plan.experiment.seed += call.searches.size();
+    plan.experiment.seed += call.searches.size() - first;
     call.searches.push_back(std::move(plan));
     for (const Individual& member : set.members) {
       CaseAnswer& one = AddCase(fmt::format("{} individual {}", set.place, member.id), call);
@@ -98,9 +116,20 @@ Result<Call> CasesOfCampaigns(const Asking& asking) {
       Simulate(one, std::move(test_case), call);
     }
     if (call.searches.back().cases.empty()) call.searches.pop_back();
-    if (asking.quiet) continue;
+  }
+  return Ok{};
+}
+
+Result<Call> CasesOfCampaigns(const Asking& asking) {
+  TRY(const std::vector<CaseSet> sets, ReadCaseSets(asking.Value("--from")));
+  Call call;
+  for (const SearchPlan& plan : asking.experiments) {
+    TRY(AddSearchesOf(sets, plan, call));
+  }
+  for (const CaseSet& set : sets) {
+    if (asking.quiet) break;
     for (const std::string& note : set.notes) asking.say(note);
-    if (const std::string other = OtherTask(set.experiment, experiment); !other.empty())
+    if (const std::string other = OtherTask(set.experiment, asking.experiments); !other.empty())
       asking.say(fmt::format("{}: scenario_parameters differ from the experiment's: {}", set.place, other));
   }
   return call;
@@ -185,30 +214,58 @@ std::string RemarkOn(const CaseAnswer& answer, const Evaluation& evaluation) {
   return fmt::format("{} without a result: {}", evaluation.without_result, NameOf(first->result.verdict));
 }
 
-// The mean of all cases and how often they failed, and how to see the toughest run.
-void Conclude(const Asking& asking, const Call& call, const std::vector<Evaluation>& all, Told& told) {
-  double sum = 0.0;
+// All cases under the same settings.
+struct Sum {
+  double fitness = 0.0;
   std::size_t evaluated = 0;
   std::size_t runs = 0;
   std::size_t failures = 0;
   const CaseRun* toughest = nullptr;
-  for (const Evaluation& one : all) {
-    runs += one.completed + one.without_result - one.left_out;
-    failures += one.failures;
-    if (one.toughest == nullptr) continue;
-    sum += one.Mean();
-    ++evaluated;
-    if (toughest == nullptr || one.toughest->result.fitness < toughest->result.fitness)
-      toughest = one.toughest;
+
+  explicit Sum(std::span<const Evaluation> all) {
+    for (const Evaluation& one : all) {
+      runs += one.completed + one.without_result - one.left_out;
+      failures += one.failures;
+      if (one.toughest == nullptr) continue;
+      fitness += one.Mean();
+      ++evaluated;
+      if (toughest == nullptr || one.toughest->result.fitness < toughest->result.fitness)
+        toughest = one.toughest;
+    }
   }
+  double Mean() const { return fitness / static_cast<double>(evaluated); }  // NaN without any
+};
+
+// Of each combination of a sweep.
+Table SumsOf(std::span<const SearchPlan> plans, std::span<const Evaluation> all) {
+  Table table({{"settings", "settings"},
+               ForPrograms("seed"),
+               {">cases", "cases"},
+               {">mean fitness", "fitness"},
+               {">runs", "runs"},
+               {">total failures", "total_failures"}});
+  const std::size_t cases = all.size() / plans.size();
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const Sum sum(all.subspan(i * cases, cases));
+    table.AddRow({plans[i].settings, fmt::format("{}", plans[i].experiment.seed), CountCell(sum.evaluated),
+                  FitnessCell(sum.Mean()), CountCell(sum.runs), CountCell(sum.failures)});
+  }
+  return table;
+}
+
+// The mean of all cases and how often they failed, and how to see the toughest run.
+void Conclude(const Asking& asking, const Call& call, std::span<const Evaluation> all, Told& told) {
+  const Sum sum(all);
+  const CaseRun* toughest = sum.toughest;
   if (toughest == nullptr) {
     told.conclusion = Conclusion::kRefused;
     return;
   }
-  told.section.sentences.push_back(fmt::format("{} case{}: mean fitness {}, {} of {} runs total failures",
-                                               FormatCount(evaluated), evaluated == 1 ? "" : "s",
-                                               FormatFitness(sum / static_cast<double>(evaluated)),
-                                               FormatCount(failures), FormatCount(runs)));
+  if (!Swept(asking))
+    told.section.sentences.push_back(fmt::format("{} case{}: mean fitness {}, {} of {} runs total failures",
+                                                 FormatCount(sum.evaluated), sum.evaluated == 1 ? "" : "s",
+                                                 FormatFitness(sum.Mean()), FormatCount(sum.failures),
+                                                 FormatCount(sum.runs)));
   const std::string dir = PastedPath(call.directory);
   told.section.commands = {
       {fmt::format("{} replay {} {} --svg run-{}.svg", asking.program, dir, toughest->id, toughest->id),
@@ -218,7 +275,9 @@ void Conclude(const Asking& asking, const Call& call, const std::vector<Evaluati
 
 Result<Told> TellEvaluation(const Asking& asking, const Call& call, std::span<const CaseAnswer> answers) {
   Told told;
-  Table table({{"file", "file"},
+  const bool swept = Swept(asking);
+  Table table({swept ? Column("settings", "settings") : ForPrograms("settings?"),
+               {"file", "file"},
                {">fitness", "fitness"},
                ForPrograms("refused"),
                ForPrograms("error"),
@@ -227,23 +286,35 @@ Result<Told> TellEvaluation(const Asking& asking, const Call& call, std::span<co
                {">first run"},
                {""}});
   std::vector<Evaluation> all;
+  const std::size_t cases = swept ? answers.size() / asking.experiments.size() : answers.size();
   for (const CaseAnswer& answer : answers) {
     const CaseAnswer one = WithRefusal(answer);
+    const Cell settings = swept ? Cell(asking.experiments[all.size() / cases].settings) : TextCell("");
     const Evaluation& evaluation = all.emplace_back(answer);
     const bool simulated = !one.runs.empty();
-    table.AddRow({one.name, FitnessCell(evaluation.Mean()), Cell("", TextValue(one.refused_rule)),
+    table.AddRow({settings, one.name, FitnessCell(evaluation.Mean()), Cell("", TextValue(one.refused_rule)),
                   Cell("", TextValue(one.refused)),
                   JsonCell(RunsOf(one).ToJson(), simulated ? FormatCount(one.runs.size()) : "-"),
                   simulated ? CountCell(evaluation.failures) : Cell(),
                   simulated ? Cell(one.runs.front().id) : Cell(), RemarkOn(one, evaluation)});
-    if (!one.refused.empty()) told.messages.push_back(WhyRefused(one));
+    // A file that cannot be read is so under all settings.
+    if (const std::string why = WhyRefused(one);
+        !one.refused.empty() && std::ranges::count(told.messages, why) == 0)
+      told.messages.push_back(why);
   }
   Json json = {{"cases", table.ToJson()}};
+  if (swept) {
+    const Table sums = SumsOf(asking.experiments, all);
+    json["sweep"] = sums.ToJson();
+    if (cases > 1) told.details = "\n" + sums.ToText();
+  }
   if (call.summary != nullptr) {
     json["experiment"] = call.summary->experiment;
     json["directory"] = call.directory;
-    json["seed"] = fmt::format("{}", call.summary->searches.front().seed);
-    json["state_hash"] = call.summary->searches.front().state_hash;
+    if (!swept) {
+      json["seed"] = fmt::format("{}", call.summary->searches.front().seed);
+      json["state_hash"] = call.summary->searches.front().state_hash;
+    }
     json["finished"] = call.summary->finished;
   }
   told.json = JsonText(json);
@@ -266,13 +337,17 @@ each other. Seeds are fresh: no run of a search has them. What comes of it is a 
 'show' and 'replay' work; it has one search for each search that the cases come from, and 'compare' knows
 that the members of one evolution's population are relatives.
 
+With --sweep or --seeds every case is simulated under each combination, in a search of its own, and the mean of
+all cases is told for each. Where --seeds does not say otherwise, a case has the same seeds in all of them.
+
 Examples:
   gauntlet evaluate flocking --case one-wall.json --replicates 20
   gauntlet evaluate flocking --case cases/*.json --replicates 100 --dry-run
   gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json
   gauntlet evaluate flocking --from campaigns/evolved-1,campaigns/evolved-2 --dir campaigns/f-f
   gauntlet evaluate flocking --from campaigns/evolved-1 --set controller=flocking-improved
-  gauntlet evaluate flocking --from campaigns/random:worst:100)";
+  gauntlet evaluate flocking --from campaigns/random:worst:100
+  gauntlet evaluate flocking --case cases/*.json --replicates 20 --sweep random_faults.count=0,1,2,3)";
 
 }  // namespace
 
@@ -282,6 +357,7 @@ Question EvaluateQuestion() {
           .summary = "simulate given test cases: files, or those of a campaign",
           .help = kEvaluateHelp,
           .place = Question::Place::kNewCampaign,
+          .sweeps = true,
           .options = {{"--case", "FILE...", "case files, .json or .argos; several may follow", Kind::kFiles},
                       {"--from", "DIR[:SUBSET]",
                        "the cases of campaigns instead, subsets as in 'gauntlet compare' (default: final)"},

@@ -23,8 +23,10 @@ struct Asking {
   std::string place;
   std::vector<std::string> cases;  // that are named: runs by their numbers, and files
   std::map<std::string, std::vector<std::string>, std::less<>> options =
-      {};                                // by name; of a flag without values
-  Experiment experiment = {};            // that a new campaign is of
+      {};                      // by name; of a flag without values
+  Experiment experiment = {};  // that a new campaign is of
+  // Of Question::sweeps: all that are swept, `experiment` the first; each with what tells it from the others.
+  std::vector<SearchPlan> experiments = {};
   std::optional<Experiment> other = {};  // that it is held against (Question::other)
   std::string program = "gauntlet";      // how commands begin
   std::function<void(const std::string& message)> say = [](const std::string&) {};
@@ -98,6 +100,7 @@ struct Question {
   Place place = Place::kCampaign;
   Named named = Named::kSome;                // how many cases are named
   const char* other = "";                    // help of a second experiment; "" = there is none
+  bool sweeps = false;                       // a new campaign may have several searches, --sweep and --seeds
   std::vector<QuestionOption> options = {};  // beside those of all questions
   // The cases that are meant. Of kCampaign, as what follows.
   Result<QuestionedCampaign> (*cases)(const Asking& asking) = nullptr;  // nullptr: those that are named

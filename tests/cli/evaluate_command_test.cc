@@ -64,6 +64,50 @@ TEST_F(CommandLine, NoticesOfManyFilesAreGivenOnce) {
   EXPECT_EQ(text.find("0 of 4 walls"), text.rfind("0 of 4 walls"));
 }
 
+TEST_F(CommandLine, EvaluateSweepsTheSameCasesInASearchForEachCombination) {
+  const std::string a = Write("a.json", R"({"obstacles": []})");
+  const std::string blocked =
+      Write("blocked.json", R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})");
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", a, blocked, a, "--sweep", "random_faults.count=11,0,3",
+                 "--seeds", "4,8", "--dir", Path("c")}),
+            kExitUsage)
+      << "the campaign of this test simulates nothing";
+  // Nothing can be simulated with more faulty robots than there are.
+  ASSERT_EQ(campaigns_.searches.size(), 4U);
+  EXPECT_EQ(campaigns_.searches[0].settings, "random_faults.count=0, seed 4");
+  EXPECT_EQ(campaigns_.searches[3].settings, "random_faults.count=3, seed 8");
+  for (const SearchPlan& search : campaigns_.searches) {
+    EXPECT_EQ(search.experiment.search.algorithm, "cases");
+    EXPECT_EQ(search.cases.size(), 2U);
+  }
+  EXPECT_EQ(campaigns_.searches[3].experiment.disturbances.random_faults.count, 3);
+  EXPECT_EQ(campaigns_.searches[3].experiment.seed, 8U);
+}
+
+TEST_F(CommandLine, EvaluateRefusesSweepsThatMakeNoSense) {
+  const std::string a = Write("a.json", R"({"obstacles": []})");
+  const auto refusal = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"evaluate", "flocking", "--case", a, "--dir", Path("c")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    err_.str("");
+    EXPECT_EQ(Run(arguments), kExitUsage);
+    EXPECT_EQ(campaigns_.starts, 0);
+    return err_.str();
+  };
+  EXPECT_EQ(
+      refusal({"--sweep", "genome.genes=1,2"}),
+      "gauntlet: 'genome.genes=1' and 'genome.genes=2' would be the same runs of the given cases: sweep "
+      "what runs depend on, such as parameters, physics, noise and faults\n");
+  EXPECT_THAT(refusal({"--sweep", "search.population=4,6"}),
+              HasSubstr("--sweep search.population=4,6: the search 'cases' does not read search.population"));
+  EXPECT_THAT(refusal({"--sweep", "search.algorithm=random,genetic"}),
+              HasSubstr("--sweep search.algorithm already says search.algorithm=random; give one of them"));
+  EXPECT_THAT(refusal({"--replicates", "3", "--sweep", "search.replicates=1,2"}),
+              HasSubstr("give one of them"));
+  EXPECT_THAT(refusal({"--seed", "3", "--seeds", "1..2"}),
+              HasSubstr("--seed 3 and --seeds 1..2: give one of them"));
+}
+
 TEST_F(CommandLine, EvaluateExitsTwoWhenNothingCouldBeSimulated) {
   const std::string blocked =
       Write("blocked.json", R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})");

@@ -84,6 +84,7 @@ TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
   sim::Disturbances& disturbances = campaigns_.replay.report.spec.disturbances;
   disturbances.noise[sim::Device::kProximity].gaussian = 0.02;
   disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500}};
+  disturbances.random_faults = {.count = 2, .tick = 40};
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
   ExpectText("replay_noise_and_faults_of_the_run_are_named", out_.str());
   EXPECT_EQ(Run({"replay", "d", "12", "--json"}), kExitDone);

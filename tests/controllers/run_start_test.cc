@@ -100,15 +100,15 @@ TEST_F(ForeignScenario, StartsWhereItsOwnSeedSays) {
 // Specs that differ in their seed alone are one question.
 TEST_F(ForeignScenario, IsAskedAboutDemandsAndNumbersWithTheSameSeedForAll) {
   EXPECT_EQ(RequirementsOf(spec_)->start, sim::Vec2(0.5, 0.0));
-  EXPECT_EQ(CountSwarm(spec_).value(), 3u);
+  EXPECT_EQ(CountSwarm(spec_).value().robots, 3u);
   spec_.seed = 78;
-  EXPECT_EQ(CountSwarm(spec_).value(), 3u);
+  EXPECT_EQ(CountSwarm(spec_).value().robots, 3u);
   EXPECT_THAT(asked_, testing::ElementsAre(1u, 1u, 1u));
 }
 
 TEST_F(ForeignScenario, IsGivenFiveSeedsToFindRoom) {
   no_room_for_ = {1, 2};
-  EXPECT_EQ(CountSwarm(spec_).value(), 3u);
+  EXPECT_EQ(CountSwarm(spec_).value().robots, 3u);
   no_room_for_ = {1, 2, 3, 4, 5};
   EXPECT_EQ(CountSwarm(spec_).error().message, "no-room-to-spawn: here");
 }

@@ -221,6 +221,17 @@ TEST(RunCodecTest, DisturbancesDecodeToWhatWasSent) {
                                           {.robot = 0, .tick = 7}}}));
 }
 
+TEST(RunCodecTest, RandomFaultsArriveAndAreLeftOutWhereNobodyIsDrawn) {
+  sim::RunSpec spec;
+  spec.disturbances.random_faults = {
+      .count = 2, .device = sim::Device::kWheels, .tick = 500, .role = sim::FaultyRole::kAll};
+  EXPECT_EQ(DecodeRunSpec(EncodeRunSpec(spec))->disturbances, spec.disturbances);
+  spec.disturbances.random_faults = {.count = 1};
+  EXPECT_EQ(DecodeRunSpec(EncodeRunSpec(spec))->disturbances, spec.disturbances);
+  spec.disturbances.random_faults = {.count = 0, .tick = 500};
+  EXPECT_EQ(EncodeRunSpec(spec), EncodeRunSpec(sim::RunSpec()));
+}
+
 TEST(RunCodecTest, RefusesDisturbancesThatItDoesNotKnow) {
   v1::RunSpec wire;
   wire.add_noise()->set_device("sonar");
@@ -233,6 +244,9 @@ TEST(RunCodecTest, RefusesDisturbancesThatItDoesNotKnow) {
   EXPECT_EQ(ErrorOf(wire), "noise of light is given twice");
   wire.Clear();
   wire.add_faults()->set_device("sonar");
+  EXPECT_EQ(ErrorOf(wire), "a fault of 'sonar', which is no device");
+  wire.Clear();
+  wire.mutable_random_faults()->set_device("sonar");
   EXPECT_EQ(ErrorOf(wire), "a fault of 'sonar', which is no device");
 }
 

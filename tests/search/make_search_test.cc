@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "controllers/registry.h"
+#include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 #include "tests/search/toy_search.h"
 
@@ -68,6 +69,32 @@ TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
             "swarm has robots 0 to 9, ticks count from 0");
   experiment.disturbances.faults[0].robot = 9;
   EXPECT_TRUE(MakeSearch(experiment).ok());
+}
+
+TEST(MakeSearchTest, MoreRandomFaultsThanRobotsOfTheRoleAreRefused) {
+  const auto made = [](const std::vector<std::string>& settings) {
+    const auto search = MakeSearch(*LoadExperiment("flocking", settings, BuiltInCatalogue()));
+    return search.ok() ? "" : search.error().message;
+  };
+  EXPECT_EQ(made({"random_faults.count=10"}), "");
+  EXPECT_EQ(
+      made({"random_faults.count=11"}),
+      "no run can begin, even without obstacles: bad-fault: random_faults.count = 11; this swarm has 10 "
+      "robots under test, so 0 to 10 of them may be faulty");
+  EXPECT_EQ(made({"random_faults.count=11", "random_faults.role=all"}), "");
+  EXPECT_THAT(made({"random_faults.count=12", "random_faults.role=all"}),
+              testing::EndsWith("this swarm has 11 robots, so 0 to 11 of them may be faulty"));
+}
+
+TEST(SearchIdentity, KnowsRandomFaultsOnlyWhereARobotIsDrawn) {
+  const auto identity = [](const std::vector<std::string>& settings) {
+    return SearchIdentity(SetupOf(*LoadExperiment("flocking", settings, BuiltInCatalogue()), {}));
+  };
+  EXPECT_EQ(identity({"random_faults.what=wheels", "random_faults.tick=9"}), identity({}));
+  EXPECT_THAT(identity({}), testing::Not(testing::HasSubstr("random_faults")));
+  EXPECT_THAT(identity({"random_faults.count=2", "random_faults.what=wheels"}),
+              testing::AllOf(testing::HasSubstr("random_faults.count = 2\nrandom_faults.what = \"wheels\"\n"),
+                             testing::Not(testing::HasSubstr("random_faults.role"))));
 }
 
 TEST(MakeSearchTest, UnknownScenarioIsNamed) {

@@ -9,9 +9,13 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sim/robot/disturber.h"
 #include "sim/simulation.h"
 #include "tests/support/toy_scenario.h"
 
@@ -277,6 +281,82 @@ TEST(Faults, AreReadAsTheyAreWritten) {
   EXPECT_TRUE(ParseFaults("")->empty());
 }
 
+std::vector<RobotIndex> Drawn(const RandomFaults& random, const std::vector<bool>& under_test,
+                              std::uint64_t seed) {
+  std::vector<RobotIndex> robots;
+  for (const RobotFault& fault : DrawFaults(random, under_test, seed)) robots.push_back(fault.robot);
+  return robots;
+}
+
+TEST(DrawFaults, GivesDifferentRobotsOfTheRoleTheFaultAndTheSameForTheSameSeed) {
+  const std::vector<bool> under_test = {true, false, true, true, true, false};
+  const RandomFaults random = {.count = 3, .device = Device::kWheels, .tick = 40};
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const std::vector<RobotFault> faults = DrawFaults(random, under_test, seed);
+    ASSERT_EQ(faults.size(), 3U);
+    EXPECT_EQ(faults, DrawFaults(random, under_test, seed));
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      EXPECT_TRUE(under_test[static_cast<std::size_t>(faults[i].robot)]) << seed;
+      EXPECT_EQ(faults[i].device, Device::kWheels);
+      EXPECT_EQ(faults[i].tick, 40);
+      if (i > 0) EXPECT_LT(faults[i - 1].robot, faults[i].robot) << seed;
+    }
+  }
+  EXPECT_THAT(Drawn({.count = 4}, under_test, 7), testing::ElementsAre(0, 2, 3, 4));
+  EXPECT_THAT(Drawn({.count = 6, .role = FaultyRole::kAll}, under_test, 7),
+              testing::ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(Drawn({}, under_test, 7), testing::IsEmpty());
+}
+
+TEST(DrawFaults, DrawsEachPairOfRobotsAsOften) {
+  constexpr int kSeeds = 20000;
+  std::map<std::vector<RobotIndex>, int> pairs;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
+    ++pairs[Drawn({.count = 2}, {true, true, false, true, true, true}, seed)];
+  EXPECT_EQ(pairs.size(), 10U);
+  // 2000 each, with a standard deviation of 42.
+  for (const auto& [pair, times] : pairs) EXPECT_NEAR(times, kSeeds / 10, 170) << pair[0] << " " << pair[1];
+}
+
+TEST(RandomFaults, MakeTheRunOfTheSameFaultsWrittenOut) {
+  const Behaviour drive = [](const ControlStep& step) {
+    step.actuators.left_wheel = step.actuators.right_wheel = 0.1;
+  };
+  std::vector<ToyRobot> robots;
+  for (int i = 0; i < 5; ++i) robots.push_back(Standing(-1, i - 2, drive));
+  robots[1].under_test = false;
+  std::set<std::uint64_t> hashes;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Disturbances drawn = {.faults = {{.robot = 1, .tick = 30}},
+                                .random_faults = {.count = 2, .device = Device::kWheels, .tick = 20}};
+    Disturbances written = {.faults = drawn.faults};
+    for (const RobotFault& fault : DrawFaults(drawn.random_faults, {true, false, true, true, true}, seed))
+      written.faults.push_back(fault);
+    const std::uint64_t hash = RunWith(
+                                   robots, 60, drawn, [](ToyScenario&) {}, seed)
+                                   .hash;
+    EXPECT_EQ(hash, RunWith(
+                        robots, 60, written, [](ToyScenario&) {}, seed)
+                        .hash)
+        << seed;
+    hashes.insert(hash);
+  }
+  EXPECT_GT(hashes.size(), 2U);
+}
+
+TEST(RandomFaults, AreToldOnlyWhereARobotIsDrawn) {
+  using Texts = std::vector<std::pair<std::string, std::string>>;
+  Disturbances disturbances = {.random_faults = {.device = Device::kGripper, .tick = 9}};
+  EXPECT_TRUE(disturbances.None());
+  EXPECT_EQ(DisturbanceTexts(disturbances), Texts());
+  disturbances.random_faults.count = 3;
+  EXPECT_FALSE(disturbances.None());
+  EXPECT_EQ(DisturbanceTexts(disturbances), (Texts{{"random_faults.count", "3"},
+                                                   {"random_faults.what", "gripper"},
+                                                   {"random_faults.tick", "9"},
+                                                   {"random_faults.role", "tested"}}));
+}
+
 TEST(Faults, ThatAreMalformedAreRefusedWithTheirText) {
   const auto error = [](std::string_view text) {
     const auto faults = ParseFaults(text);
@@ -325,6 +405,17 @@ TEST(Disturbances, ThatCannotBeAreRefusedWithTheirValue) {
   wrong.faults = {{.robot = 0, .device = {}, .tick = -3}};
   EXPECT_EQ(refusal(wrong),
             "bad-fault: 0:stopped@-3: robot 0, tick -3; this swarm has robots 0 to 0, ticks count from 0");
+  wrong.faults.clear();
+  wrong.random_faults = {.count = 2};
+  EXPECT_EQ(
+      refusal(wrong),
+      "bad-fault: random_faults.count = 2; this swarm has 1 robots under test, so 0 to 1 of them may be "
+      "faulty");
+  wrong.random_faults = {.count = -1, .role = FaultyRole::kAll};
+  EXPECT_EQ(refusal(wrong),
+            "bad-fault: random_faults.count = -1; this swarm has 1 robots, so 0 to 1 of them may be faulty");
+  wrong.random_faults = {.count = 1, .tick = -3};
+  EXPECT_EQ(refusal(wrong), "bad-fault: random_faults.tick = -3; ticks count from 0");
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ struct ToyRobot {
   bool bodies_block_radio = true;
   DeviceSet equipment = kAllDevices;
   Beginning beginning = [](Actuators&) {};
+  bool under_test = true;
 };
 
 // Ends at the tick limit, or after the tick at which `finished` says so. Fitness: mean distance of the robots
@@ -73,7 +74,8 @@ class ToyScenario final : public Scenario {
            .controller = std::make_unique<ToyController>(robot.devices, robot.behaviour, robot.beginning),
            .radio_range = robot.radio_range,
            .bodies_block_radio = robot.bodies_block_radio,
-           .equipment = robot.equipment});
+           .equipment = robot.equipment,
+           .under_test = robot.under_test});
     }
     return swarm;
   }

@@ -119,7 +119,7 @@ TEST_F(CommandsTest, ItsRunsBeginWithARobotlessStart) {
   const auto requirements = controllers::RequirementsOf(spec);
   ASSERT_TRUE(requirements.ok()) << requirements.error().message;
   EXPECT_EQ(requirements->inflation, 0.2);
-  EXPECT_EQ(*controllers::CountSwarm(spec), 0U);
+  EXPECT_EQ(controllers::CountSwarm(spec)->robots, 0U);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ inline sim::RunSpec SampleSpec() {
                              {sim::Device::kRangeAndBearing, {.drop = 0.1}}};
   spec.disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500},
                               {.robot = 0, .device = {}, .tick = 7}};
+  spec.disturbances.random_faults = {
+      .count = 2, .device = sim::Device::kLeds, .tick = 3, .role = sim::FaultyRole::kAll};
   return spec;
 }
 

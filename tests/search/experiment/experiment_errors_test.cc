@@ -173,6 +173,12 @@ TEST(ExperimentErrorsTest, DisturbancesAreCheckedBeforeAnythingStarts) {
   EXPECT_EQ(ErrorOf(Marching("faults = '3:wheels@-5'\n")),
             "toy.toml:2:1: faults: '3:wheels@-5': the tick is a whole number, 0 to 1000000000");
   EXPECT_EQ(ErrorOf(Marching("faults = 3\n")), "toy.toml:2:1: faults is a whole number, expected text");
+  EXPECT_EQ(ErrorOf(kMarching, {"random_faults.count=1001"}),
+            "--set random_faults.count=1001: random_faults.count = 1001 is out of range, allowed 0 to 1000");
+  EXPECT_THAT(ErrorOf(kMarching, {"random_faults.what=whels"}),
+              HasSubstr("random_faults.what = \"whels\" is unknown, allowed stopped, wheels, leds, "));
+  EXPECT_EQ(ErrorOf(kMarching, {"random_faults.role=prey"}),
+            "--set random_faults.role=prey: random_faults.role = \"prey\" is unknown, allowed tested, all");
 }
 
 TEST(ExperimentErrorsTest, ScenarioAndControllerMustExistAndFit) {

@@ -1,3 +1,4 @@
+// Covers: search/experiment/disturbance_keys.cc
 #include "search/experiment/experiment_file.h"
 
 #include <gmock/gmock.h>
@@ -111,11 +112,14 @@ TEST(ExperimentFileTest, DisturbancesAreKeysOfEveryExperiment) {
   EXPECT_TRUE(quiet.disturbances.None());
   const Result<Experiment> read =
       ParseToy("scenario = 'marching'\n[noise]\nproximity.gaussian = 0.02\nlight.uniform = 0.0\n",
-               {"noise.range_and_bearing.drop=0.1", "faults=3:wheels@500 4:stopped@0"});
+               {"noise.range_and_bearing.drop=0.1", "faults=3:wheels@500 4:stopped@0",
+                "random_faults.count=2", "random_faults.what=leds", "random_faults.role=all"});
   ASSERT_TRUE(read.ok()) << read.error().message;
-  const sim::Disturbances expected = {.noise = {{sim::Device::kProximity, {.gaussian = 0.02}},
-                                                {sim::Device::kRangeAndBearing, {.drop = 0.1}}},
-                                      .faults = {{3, sim::Device::kWheels, 500}, {4, {}, 0}}};
+  const sim::Disturbances expected = {
+      .noise = {{sim::Device::kProximity, {.gaussian = 0.02}},
+                {sim::Device::kRangeAndBearing, {.drop = 0.1}}},
+      .faults = {{3, sim::Device::kWheels, 500}, {4, {}, 0}},
+      .random_faults = {.count = 2, .device = sim::Device::kLeds, .role = sim::FaultyRole::kAll}};
   EXPECT_EQ(read->disturbances, expected);
   const std::string text = WriteExperiment(*read, {}, ToyCatalogue());
   EXPECT_THAT(text, HasSubstr("faults = \"3:wheels@500 4:stopped@0\""));

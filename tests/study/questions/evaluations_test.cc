@@ -92,6 +92,40 @@ TEST(EvaluateQuestion, NamesRefusalsTheMeanAndTheRunToLookAt) {
   EXPECT_EQ(TellEvaluated({Evaluated()[2]}).conclusion, Conclusion::kRefused);
 }
 
+TEST(EvaluateQuestion, TellsTheCombinationsOfASweepApart) {
+  std::vector<CaseAnswer> cases(4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    cases[i].name = i % 2 == 0 ? "a.json" : "none.json";
+    cases[i].refused = i % 2 == 0 ? "" : "none.json: no such file";
+  }
+  cases[0].runs = {RunWith(1, Ended(false))};
+  cases[2].runs = {RunWith(2, Ended(true))};
+  Asking asking{.experiments = {{"faults=1:leds@0", {}}, {"faults=2:leds@0", {}}}};
+  asking.experiments[1].experiment.seed = 5;
+  const Told told = EvaluateQuestion().tell(asking, {.directory = "d"}, cases).value();
+  EXPECT_EQ(ToText(told.section) + told.details,
+            "  settings         file       fitness  runs  total failures  first run\n"
+            "  faults=1:leds@0  a.json       0.500     1               0          1\n"
+            "  faults=1:leds@0  none.json        -     -               -          -  error\n"
+            "  faults=2:leds@0  a.json       0.000     1               1          2\n"
+            "  faults=2:leds@0  none.json        -     -               -          -  error\n"
+            "  gauntlet replay d 2 --svg run-2.svg  # see the toughest of these runs\n"
+            "  gauntlet show d --json               # everything, for scripts\n"
+            "\n"
+            "  settings         cases  mean fitness  runs  total failures\n"
+            "  faults=1:leds@0      1         0.500     1               0\n"
+            "  faults=2:leds@0      1         0.000     1               1\n");
+  EXPECT_THAT(told.messages, testing::ElementsAre("none.json: no such file"));
+  const Json json = Json::parse(told.json);
+  EXPECT_EQ(json.at("cases")[2].at("settings"), "faults=2:leds@0");
+  EXPECT_EQ(json.at("sweep")[1], Json({{"settings", "faults=2:leds@0"},
+                                       {"seed", "5"},
+                                       {"cases", 1},
+                                       {"fitness", 0.0},
+                                       {"runs", 1},
+                                       {"total_failures", 1}}));
+}
+
 TEST(EvaluateQuestion, PrintsFortyRowsAndTheMeanOfAll) {
   std::vector<CaseAnswer> cases;
   for (RunId run = 1; run <= 60; ++run) {
