@@ -142,13 +142,20 @@ Status CheckSettings(const std::vector<ExtraSet>& settings, const std::vector<Se
 
 // Given cases are simulated as these settings say, and all others would only repeat the runs.
 Status CheckDifferent(const std::vector<SearchPlan>& plans) {
-  const auto same = [](const Experiment& one, const Experiment& other) {
-    return static_cast<const sim::RunSettings&>(one) == other && one.seed == other.seed &&
-           one.search.replicates == other.search.replicates;
+  const auto settings_of = [](const SearchPlan& plan) {
+    sim::RunSettings settings = plan.experiment;
+    sim::RandomFaults& random = settings.disturbances.random_faults;
+    if (random.count == 0) random = {};
+    return settings;
+  };
+  const auto same = [&](const SearchPlan& one, const SearchPlan& other) {
+    return one.experiment.seed == other.experiment.seed &&
+           one.experiment.search.replicates == other.experiment.search.replicates &&
+           settings_of(one) == settings_of(other);
   };
   for (std::size_t i = 1; i < plans.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!same(plans[j].experiment, plans[i].experiment)) continue;
+      if (!same(plans[j], plans[i])) continue;
       return InvalidInput(fmt::format(
           "'{}' and '{}' would be the same runs of the given cases: sweep what runs depend on, such as "
           "parameters, physics, noise and faults",

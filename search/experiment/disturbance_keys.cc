@@ -63,16 +63,17 @@ std::vector<Key> RandomFaultKeys() {
   what.set = [](Experiment& e, const KeyValue& v) {
     e.disturbances.random_faults.device = sim::DeviceOfKey(std::get<std::string>(v));
   };
-  return {RandomFaultKey<&RandomFaults::count>(
-              "random_faults.count", sim::kMaxRobots,
-              "robots of each run that have a fault, drawn by the run's seed, beside those of 'faults'"),
-          what,
-          RandomFaultKey<&RandomFaults::tick>("random_faults.tick", sim::kLatestFault, "from which they have it"),
-          gauntlet::ChoiceKey<Experiment, &Experiment::disturbances, &sim::Disturbances::random_faults,
-                              &RandomFaults::role>("random_faults.role",
-                                                   {sim::kFaultyRoles.begin(), sim::kFaultyRoles.end()},
-                                                   "drawn of the robots of the controller under test, or "
-                                                   "also of the scenario's own, such as the prey")};
+  return {
+      RandomFaultKey<&RandomFaults::count>(
+          "random_faults.count", sim::kMaxRobots,
+          "robots of each run that have a fault, drawn by the run's seed, beside those of 'faults'"),
+      what,
+      RandomFaultKey<&RandomFaults::tick>("random_faults.tick", sim::kLatestFault, "from which they have it"),
+      gauntlet::ChoiceKey<Experiment, &Experiment::disturbances, &sim::Disturbances::random_faults,
+                          &RandomFaults::role>("random_faults.role",
+                                               {sim::kFaultyRoles.begin(), sim::kFaultyRoles.end()},
+                                               "drawn of the robots of the controller under test, or "
+                                               "also of the scenario's own, such as the prey")};
 }
 
 std::vector<Key> NoiseKeys() {

@@ -98,6 +98,7 @@ TEST_F(CommandLine, EvaluateRefusesSweepsThatMakeNoSense) {
       refusal({"--sweep", "genome.genes=1,2"}),
       "gauntlet: 'genome.genes=1' and 'genome.genes=2' would be the same runs of the given cases: sweep "
       "what runs depend on, such as parameters, physics, noise and faults\n");
+  EXPECT_THAT(refusal({"--sweep", "random_faults.what=wheels,leds"}), HasSubstr("would be the same runs"));
   EXPECT_THAT(refusal({"--sweep", "search.population=4,6"}),
               HasSubstr("--sweep search.population=4,6: the search 'cases' does not read search.population"));
   EXPECT_THAT(refusal({"--sweep", "search.algorithm=random,genetic"}),

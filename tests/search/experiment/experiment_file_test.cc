@@ -1,4 +1,5 @@
 // Covers: search/experiment/disturbance_keys.cc
+
 #include "search/experiment/experiment_file.h"
 
 #include <gmock/gmock.h>
