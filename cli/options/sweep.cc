@@ -201,9 +201,13 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
     settings.push_back({"--set", set.substr(0, set.find('=')), set});
   for (const Sweep& one : sweeps)
     settings.push_back({"--sweep", one.key, fmt::format("{}={}", one.key, fmt::join(one.values, ","))});
-  TRY(CheckSettings(settings, plans));
-  if (RowOf(plans.front().experiment).given_cases()) {
+  const bool given = RowOf(plans.front().experiment).given_cases();
+  if (given) {
     TRY(CheckDifferent(plans));
+  }
+  // A single experiment may say how something else is searched: given cases are simulated all the same.
+  if (!given || plans.size() > 1) {
+    TRY(CheckSettings(settings, plans));
   }
   if (plans.size() == 1) plans.front().settings.clear();
   return plans;
