@@ -86,9 +86,12 @@ Table MarginTable(const std::vector<Margin>& margins) {
 
 std::string RankText(const std::vector<Margin>& margins) {
   std::vector<std::string> least;
+  bool crossed = false;
   for (const Margin& one : margins) {
+    crossed = crossed || SideOf(one) != Side::kAlwaysBelow;
     if (one.rank == 1) least.push_back(one.plan.key.key.path);
   }
+  if (!crossed) return "It withstands all of these ranges.";
   return fmt::format("Of these ranges it withstands least: {}{}.", fmt::join(least, ", "),
                      least.size() > 1 ? " (their intervals overlap)" : "");
 }
