@@ -10,6 +10,7 @@
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/baseline_run.h"
+#include "cli/dry_run.h"
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
@@ -235,6 +236,24 @@ Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const Loca
   campaign.serving = options.running;
   campaign.session.workers = workers;
   return campaign;
+}
+
+Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPlan>& searches,
+                            const LocalOptions& options,
+                            const std::function<Result<ExitCode>(const std::string& directory)>& tell) {
+  TRY(CampaignRun campaign, LocalRun(searches, options));
+  if (options.dry_run) return PrintDryRun(context, campaign, searches);
+  campaign.run = [&](const SessionOptions& session) {
+    return context.campaigns.Start(campaign.directory, searches, session);
+  };
+  ExitCode told = kExitDone;
+  campaign.report = [&](const SessionReport& report) -> Status {
+    if (report.end == CampaignEnd::kStopped) return Ok{};
+    TRY(told, tell(campaign.directory));
+    return Ok{};
+  };
+  TRY(const ExitCode code, RunCampaign(context, campaign));
+  return code == kExitDone ? told : code;
 }
 
 }  // namespace gauntlet

@@ -40,5 +40,9 @@ Status PrintFinished(CommandContext& context, const CampaignSummary& summary, co
 
 // A new campaign with workers on this machine, but for what it is to run.
 Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options);
+// Runs it (or is a dry run), and when it has come to its end tells what it has found.
+Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPlan>& searches,
+                            const LocalOptions& options,
+                            const std::function<Result<ExitCode>(const std::string& directory)>& tell);
 
 }  // namespace gauntlet

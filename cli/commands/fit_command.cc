@@ -12,7 +12,6 @@
 #include "base/parse_number.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
-#include "cli/dry_run.h"
 #include "cli/output/output_file.h"
 #include "cli/run_campaign.h"
 #include "cli/study_run.h"
@@ -51,7 +50,7 @@ Result<int> NumberFrom(const char* option, const std::string& text, int most, in
 Result<SearchPlan> PlanFit(CommandContext& context, const FitOptions& options) {
   TRY(Experiment experiment, LoadExperimentWith(options.experiment, {}));
   TRY(experiment.fit.runs, NumberFrom("--budget", options.budget, 100'000'000, experiment.fit.runs));
-  const bool is_fit = RowOf(experiment).varies_settings;
+  const bool is_fit = Reads(RowOf(experiment).info, "fit.vary");
   if (is_fit && options.targets.empty() && options.vary.empty()) return SearchPlan{"", std::move(experiment)};
   if (options.targets.empty())
     return InvalidInput("held against what? --targets FILE.toml names the file with the measured values");
@@ -258,20 +257,8 @@ Result<ExitCode> RunFit(CommandContext& context, const FitOptions& options) {
   if (!options.output.empty()) {
     TRY(OutputFile::Open(options.output));  // without it the runs would be for nothing
   }
-  const std::vector<SearchPlan> plans = {plan};
-  TRY(CampaignRun campaign, LocalRun(plans, options));
-  if (options.dry_run) return PrintDryRun(context, campaign, plans);
-  campaign.run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(campaign.directory, plans, session);
-  };
-  ExitCode told = kExitDone;
-  campaign.report = [&](const SessionReport& report) -> Status {
-    if (report.end == CampaignEnd::kStopped) return Ok{};
-    TRY(told, Tell(context, options, campaign.directory));
-    return Ok{};
-  };
-  TRY(const ExitCode code, RunCampaign(context, campaign));
-  return code == kExitDone ? told : code;
+  return RunAndTell(context, {plan}, options,
+                    [&](const std::string& directory) { return Tell(context, options, directory); });
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include "base/number_text.h"
 #include "base/parse_number.h"
 #include "cli/commands.h"
-#include "cli/dry_run.h"
 #include "cli/run_campaign.h"
 #include "master/directory/campaign_directory.h"
 #include "search/search_table.h"
@@ -92,19 +91,8 @@ Result<ExitCode> RunMargin(CommandContext& context, const MarginOptions& options
     return Tell(context, options, first);
   }
   TRY(const std::vector<SearchPlan> plans, PlanMargins(context, options));
-  TRY(CampaignRun campaign, LocalRun(plans, options));
-  if (options.dry_run) return PrintDryRun(context, campaign, plans);
-  campaign.run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(campaign.directory, plans, session);
-  };
-  ExitCode told = kExitDone;
-  campaign.report = [&](const SessionReport& report) -> Status {
-    if (report.end == CampaignEnd::kStopped) return Ok{};
-    TRY(told, Tell(context, options, campaign.directory));
-    return Ok{};
-  };
-  TRY(const ExitCode code, RunCampaign(context, campaign));
-  return code == kExitDone ? told : code;
+  return RunAndTell(context, plans, options,
+                    [&](const std::string& directory) { return Tell(context, options, directory); });
 }
 
 }  // namespace

@@ -233,10 +233,10 @@ FitResult ResultOf(const Experiment& experiment, const FitRounds& rounds, bool f
 Result<FitResult> ReadFit(const std::string& dir) {
   TRY(const StoredCampaign campaign, OpenStoredCampaign(dir));
   const SearchPlan& plan = campaign.plans.front();
-  if (!RowOf(plan.experiment).varies_settings || campaign.plans.size() != 1)
-    return InvalidInput(fmt::format("{} holds no fit: gauntlet fit makes one", dir));
   ResultStore& store = *campaign.view.store;
   TRY(const auto search, MakeStoredSearch(plan, store));
+  if (search->Fit() == nullptr || campaign.plans.size() != 1)
+    return InvalidInput(fmt::format("{} holds no fit: gauntlet fit makes one", dir));
   TRY(RestoreSearch(plan.id, store, *search));
   TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
   const bool finished = std::ranges::any_of(stored, [&](const StoredSearch& one) {
