@@ -63,7 +63,7 @@ std::vector<Key> RandomFaultKeys() {
   what.set = [](Experiment& e, const KeyValue& v) {
     e.disturbances.random_faults.device = sim::DeviceOfKey(std::get<std::string>(v));
   };
-  return {
+  std::vector<Key> keys = {
       RandomFaultKey<&RandomFaults::count>(
           "random_faults.count", sim::kMaxRobots,
           "robots of each run that have a fault, drawn by the run's seed, beside those of 'faults'"),
@@ -74,6 +74,8 @@ std::vector<Key> RandomFaultKeys() {
                                                {sim::kFaultyRoles.begin(), sim::kFaultyRoles.end()},
                                                "drawn of the robots of the controller under test, or "
                                                "also of the scenario's own, such as the prey")};
+  for (Key& key : keys) key.rare = true;
+  return keys;
 }
 
 std::vector<Key> NoiseKeys() {
