@@ -202,12 +202,12 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   for (const Sweep& one : sweeps)
     settings.push_back({"--sweep", one.key, fmt::format("{}={}", one.key, fmt::join(one.values, ","))});
   const bool given = RowOf(plans.front().experiment).given_cases();
-  if (given) {
-    TRY(CheckDifferent(plans));
-  }
   // A single experiment may say how something else is searched: given cases are simulated all the same.
   if (!given || plans.size() > 1) {
     TRY(CheckSettings(settings, plans));
+  }
+  if (given) {
+    TRY(CheckDifferent(plans));
   }
   if (plans.size() == 1) plans.front().settings.clear();
   return plans;

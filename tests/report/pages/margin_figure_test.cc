@@ -35,7 +35,7 @@ TEST(MarginFigureTest, DrawsTheFitWithItsBandAndTheShare) {
   EXPECT_EQ(document.select_nodes("//*[contains(@class, 'band')]").size(), 1U);
   EXPECT_EQ(figures.front().csv(),
             "noise.wheels.gaussian,failed,runs,share,monotone fit\n"
-            "0,2,20,10 %,0.1\n0.2,8,20,40 %,0.375\n0.4,7,20,35 %,0.375\n1,20,20,100 %,1\n");
+            "0,2,20,0.1,0.1\n0.2,8,20,0.4,0.375\n0.4,7,20,0.35,0.375\n1,20,20,1,1\n");
 }
 
 TEST(MarginFigureTest, ThereIsNoneOfACampaignThatIsNoMargin) {
