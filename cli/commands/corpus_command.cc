@@ -127,7 +127,7 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
                         {confirmed->interval.low, confirmed->interval.high}};
   TRY(CheckFails(fmt::format("run {}", run), kept.content.found));
   TRY(const CampaignReplay replay,
-      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run, /*scratch=*/""));
+      context.campaigns.Replay(confirmed->campaign, confirmed->Typical()->id, /*scratch=*/""));
   kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay.report));
   kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
   kept.content.settings = SettingsOf(experiment);

@@ -118,8 +118,9 @@ std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& a
   }
   json["baseline"] = answers.baselines.empty() ? Json() : BaselinesTable(answers.baselines).ToJson();
   json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
-  json["distinct_failures"] =
-      DistinctFailuresTable(DistinctFailures(answers.confirmations, answers.smallest_layouts)).ToJson();
+  const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);
+  json["distinct_failures"] = DistinctFailuresTable(distinct.All()).ToJson();
+  json["failure_groupings"] = FailureGroupingsTable(distinct).ToJson();
   return JsonText(json);
 }
 

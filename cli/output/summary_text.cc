@@ -179,12 +179,12 @@ void AddBaseline(const SearchSummary& search, const CampaignAnswers& answers, co
 
 // "" when there is nothing to tell.
 std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program) {
-  std::string text = ToText(TellDistinctFailures(answers, kMostFailures, program));
+  std::string text;
+  for (const Section& one : TellDistinctFailures(answers, kMostFailures, program)) text += ToText(one);
   std::size_t told = 0;
-  for (const DistinctFailure& one : DistinctFailures(answers.confirmations, answers.smallest_layouts)) {
-    if (told++ == kMostFailures) break;
-    if (one.smallest != nullptr)
-      text += fmt::format("  {}: {}\n", DescribeSmallest(*one.smallest), PastedPath(one.smallest->file));
+  for (const SmallestLayout& one : answers.smallest_layouts) {
+    if (one.Smaller() && told++ < kMostFailures)
+      text += fmt::format("  {}: {}\n", DescribeSmallest(one), PastedPath(one.file));
   }
   return text;
 }
@@ -220,16 +220,16 @@ std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const Campaig
         {ReplayHint(context, best.runs.back(), "case", best.id), "see what happened in the toughest case"});
   }
   if (summary.failing_runs > 0 && answers.confirmations.empty())
-    commands.push_back({fmt::format("{} confirm {} --all-failing", context.program, directory),
-                        "how many different failures are these?"});
-  for (const DistinctFailure& one : DistinctFailures(answers.confirmations, answers.smallest_layouts)) {
-    const RunId run = one.cases.front()->run;
-    if (!one.confirmed || one.smallest != nullptr || run == 0) continue;
-    commands.push_back({fmt::format("{} minimise {} {}", context.program, directory, run),
-                        "which of its obstacles does this failure take?"});
     commands.push_back(
-        {fmt::format("{} blame {} {}", context.program, directory, run), "how much does each of them do?"});
-    break;
+        {fmt::format("{} confirm {} --all-failing --replicates 20", context.program, directory),
+         "how many different failures are these?"});
+  const Confirmation* toughest = ToughestOf(answers.confirmations);
+  if (toughest == nullptr) return commands;
+  if (std::ranges::count(answers.smallest_layouts, toughest->run, &SmallestLayout::run) == 0) {
+    commands.push_back({fmt::format("{} minimise {} {}", context.program, directory, toughest->run),
+                        "which of its obstacles does the toughest case take?"});
+    commands.push_back({fmt::format("{} blame {} {}", context.program, directory, toughest->run),
+                        "how much does each of them do?"});
   }
   return commands;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/tables/table.h"
+#include "base/number_text.h"
 #include "controllers/registry.h"
 #include "report/tables/summary_tables.h"
 #include "search/archive/failure_archive.h"
@@ -12,10 +13,6 @@ namespace gauntlet {
 namespace {
 
 constexpr const char* kTitle = "The fewest obstacles that break the swarm";
-
-std::string Counted(std::size_t obstacles) {
-  return obstacles == 1 ? "1 obstacle" : fmt::format("{} obstacles", obstacles);
-}
 
 analysis::LayoutGrid GridOf(const SearchSummary& summary, const Experiment& experiment) {
   const ArchiveView& archive = summary.archive;
@@ -42,8 +39,8 @@ analysis::LayoutGrid GridOf(const SearchSummary& summary, const Experiment& expe
     layout.column = static_cast<std::size_t>(failure.cell[0]);
     layout.row = static_cast<std::size_t>(failure.cell[1]);
     layout.obstacles = MemberOf(summary, failure).genome;
-    layout.caption =
-        fmt::format("{}: {} of {}", Counted(layout.obstacles.size()), failure.failures, failure.runs);
+    layout.caption = fmt::format("{}: {} of {}", Counted(layout.obstacles.size(), "obstacle"),
+                                 failure.failures, failure.runs);
     if (places) layout.place = sim::Vec2(failure.middle[0], failure.middle[1]);
   }
   return grid;

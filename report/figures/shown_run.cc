@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <set>
 #include <thread>
@@ -37,34 +38,13 @@ Result<ShownRun> ShowRun(const std::string& experiment_name, StoredRun stored) {
   return shown;
 }
 
-}  // namespace
-
-std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most) {
-  std::vector<RunId> ids;
-  std::set<RunId> known;
-  const auto add = [&](RunId id) {
-    if (id != 0 && ids.size() < most && known.insert(id).second) ids.push_back(id);
-  };
-  for (const DistinctFailure& failure : DistinctFailures(facts.answers.confirmations, {}))
-    add(failure.cases.front()->run);
-  for (const SmallestLayout& one : facts.answers.smallest_layouts) add(one.run);
-  for (const RunMap& map : maps) {
-    for (const std::vector<RunId>& row : map.toughest) {
-      for (const RunId run : row) add(run);
-    }
-  }
-  for (const CaseFacts& one : facts.cases) add(one.toughest);
-  return ids;
-}
-
-Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids) {
-  if (ids.empty()) return std::vector<ShownRun>{};
-  TRY(auto runs, ReadRuns(facts.directory, ids));
+Result<std::vector<ShownRun>> ShowAll(std::vector<StoredRun> runs,
+                                      const std::function<std::string(const StoredRun&)>& experiment_of) {
   std::vector<std::optional<Result<ShownRun>>> shown(runs.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < runs.size(); i = next++) {
-      const std::string& name = facts.plans.at(runs[i].search - 1).experiment.name;
+      const std::string name = experiment_of(runs[i]);
       shown[i] = ShowRun(name, std::move(runs[i]));
     }
   };
@@ -80,6 +60,44 @@ Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::ve
     all.push_back(**std::move(one));
   }
   return all;
+}
+
+}  // namespace
+
+std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most) {
+  std::vector<RunId> ids;
+  std::set<RunId> known;
+  const auto add = [&](RunId id) {
+    if (id != 0 && ids.size() < most && known.insert(id).second) ids.push_back(id);
+  };
+  const DistinctFailures distinct = DistinctFailuresOf(facts.answers.confirmations, {});
+  for (const DistinctFailure* failure : distinct.All()) add(failure->cases.front()->run);
+  if (const Confirmation* toughest = ToughestOf(facts.answers.confirmations)) add(toughest->run);
+  for (const SmallestLayout& one : facts.answers.smallest_layouts) add(one.run);
+  for (const RunMap& map : maps) {
+    for (const std::vector<RunId>& row : map.toughest) {
+      for (const RunId run : row) add(run);
+    }
+  }
+  for (const CaseFacts& one : facts.cases) add(one.toughest);
+  return ids;
+}
+
+Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids) {
+  if (ids.empty()) return std::vector<ShownRun>{};
+  TRY(auto runs, ReadRuns(facts.directory, ids));
+  return ShowAll(std::move(runs),
+                 [&](const StoredRun& run) { return facts.plans.at(run.search - 1).experiment.name; });
+}
+
+Result<std::vector<ShownRun>> ShowTypicalRuns(const CampaignFacts& facts,
+                                              const std::vector<const DistinctFailure*>& failures) {
+  std::vector<StoredRun> all;
+  for (const DistinctFailure* one : failures) {
+    TRY(auto runs, ReadRuns(one->cases.front()->campaign, {one->typical->id}));
+    all.push_back(std::move(runs.front()));
+  }
+  return ShowAll(std::move(all), [&](const StoredRun&) { return facts.plans.front().experiment.name; });
 }
 
 }  // namespace gauntlet

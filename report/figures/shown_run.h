@@ -9,6 +9,7 @@
 #include "master/campaign/replay.h"
 #include "report/figures/campaign_facts.h"
 #include "report/figures/run_map.h"
+#include "study/questions/distinct_failures.h"
 
 namespace gauntlet {
 
@@ -20,12 +21,15 @@ struct ShownRun {
   analysis::RunFigure figure;  // empty when the stored run does not read back
 };
 
-// At most `most` runs that are worth a look: of the distinct failures, of cases that were made smaller, the
-// toughest of each field of the maps, the first map first,
-// then the toughest run of the toughest cases. Each once, in this order.
+// At most `most` runs that are worth a look: of the toughest cases of the distinct failures, of cases that
+// were made smaller, the toughest of each field of the maps, the first map first, then the toughest run of
+// the toughest cases. Each once, in this order.
 std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most);
 
 // Simulates them on all cores. Errors: those of ReadRuns; the worker program cannot be run.
 Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids);
+// The same of the typical runs of distinct failures, which stand in the campaigns that confirmed their cases.
+Result<std::vector<ShownRun>> ShowTypicalRuns(const CampaignFacts& facts,
+                                              const std::vector<const DistinctFailure*>& failures);
 
 }  // namespace gauntlet

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/layout_strip.h"
+#include "analysis/figures/run/run_thumbnail.h"
 #include "analysis/tables/section.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
@@ -18,10 +19,7 @@ namespace {
 
 constexpr std::size_t kMostFailures = 12;   // that are listed
 constexpr std::size_t kMostMinimised = 24;  // that are drawn
-
-std::string Counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", FormatCount(count), what, count == 1 ? "" : "s");
-}
+constexpr double kTypicalPixels = 220.0;
 
 // The case's name, with a link where its run can be shown.
 std::string CaseLink(const CampaignPages& pages, std::size_t number, const std::string& name, RunId run) {
@@ -67,6 +65,26 @@ bool IsOf(const CampaignFacts& facts, RunId run, const CaseFacts& of_case) {
          found->individual == of_case.individual;
 }
 
+// A thumbnail for each distinct failure: a run that fails as most of its case do.
+std::string TypicalRunsHtml(const CampaignPages& pages, std::size_t number) {
+  const CampaignAnswers& answers = pages.facts.answers;
+  const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);
+  const auto failures = distinct.All();
+  std::string html;
+  for (std::size_t i = 0; i < std::min(failures.size(), pages.typical.size()); ++i) {
+    if (pages.typical[i].figure.result.trajectory.empty()) continue;
+    const Confirmation& toughest = *failures[i]->cases.front();
+    html += fmt::format(
+        "<li><img loading=\"lazy\" alt=\"\" width=\"220\" height=\"220\" src=\"{}\">{}: {}</li>\n",
+        DataUri(analysis::DrawThumbnail(pages.typical[i].figure, kTypicalPixels)), Html(failures[i]->name),
+        CaseLink(pages, number, toughest.name, toughest.run));
+  }
+  return html.empty()
+             ? ""
+             : fmt::format(
+                   "<p>A typical run of each, with fresh seeds:</p>\n<ul class=\"thumbs\">\n{}</ul>\n", html);
+}
+
 }  // namespace
 
 std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number) {
@@ -74,19 +92,17 @@ std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number)
   const std::vector<Confirmation>& confirmations = facts.answers.confirmations;
   if (confirmations.empty()) {
     if (facts.summary.total_failures == 0 && facts.summary.failing_runs == 0) return "";
-    return ToHtml(
-        {.title = "Distinct failures",
-         .commands = {{fmt::format("gauntlet confirm {} --all-failing", PastedPath(facts.directory)),
-                       "How many different failures these are, and whether they happen again with "
-                       "fresh seeds, is not known yet. This finds it out"}}});
+    return ToHtml({.title = "Distinct failures",
+                   .commands = {{fmt::format("gauntlet confirm {} --all-failing --replicates 20",
+                                             PastedPath(facts.directory)),
+                                 "How many different failures these are, and whether they happen again with "
+                                 "fresh seeds, is not known yet. This finds it out"}}});
   }
-  Section section = TellDistinctFailures(facts.answers, kMostFailures, "gauntlet",
-                                         [&](RunId run) { return pages.LinkTo(number, run); });
-  section.lead = {
-      "Cases whose runs fail at the same place or in the same way are one failure; it is confirmed when one "
-      "of "
-      "them fails in at least half of its runs with fresh seeds."};
-  return ToHtml(section);
+  std::string html;
+  for (const Section& section : TellDistinctFailures(facts.answers, kMostFailures, "gauntlet",
+                                                     [&](RunId run) { return pages.LinkTo(number, run); }))
+    html += ToHtml(section);
+  return html + TypicalRunsHtml(pages, number);
 }
 
 std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {

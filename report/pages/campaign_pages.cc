@@ -15,10 +15,15 @@ std::string CampaignPages::LinkTo(std::size_t number, RunId run) const {
 
 Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown) {
   TRY(CampaignFacts facts, ReadFacts(dir));
-  CampaignPages pages{.facts = std::move(facts), .courses = {}, .maps = {}, .shown = {}};
+  CampaignPages pages{.facts = std::move(facts), .courses = {}, .maps = {}, .shown = {}, .typical = {}};
   pages.courses = CoursesOf(pages.facts);
   pages.maps = MapsOf(pages.facts);
   TRY(pages.shown, ShowRuns(pages.facts, RunsToShow(pages.facts, pages.maps, most_shown)));
+  const CampaignAnswers& answers = pages.facts.answers;
+  const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);
+  auto failures = distinct.All();
+  failures.resize(std::min(failures.size(), most_shown));
+  TRY(pages.typical, ShowTypicalRuns(pages.facts, failures));
   return pages;
 }
 

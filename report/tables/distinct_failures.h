@@ -1,4 +1,4 @@
-// How many different failures the confirmed cases of a campaign are.
+// How many different failures the confirmed cases of a campaign are, in words.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +7,21 @@
 #include <vector>
 
 #include "analysis/tables/section.h"
-#include "study/questions/confirmations.h"
+#include "study/questions/distinct_failures.h"
 
 namespace gauntlet {
 
-// The toughest first. `program`: how the commands begin that show one; `link`: where a page tells of a run.
-Table DistinctFailuresTable(const std::vector<DistinctFailure>& failures, const std::string& program = "",
+// The toughest first, of one grouping or of several. `program`: how the commands begin that show one; `link`:
+// where a page tells of a run.
+Table DistinctFailuresTable(const std::vector<const DistinctFailure*>& failures,
+                            const std::string& program = "",
                             const std::function<std::string(RunId)>& link = nullptr);
-// "8 distinct failures (7 confirmed) ..." with the `most` toughest. Nothing when no case was confirmed.
-Section TellDistinctFailures(const CampaignAnswers& answers, std::size_t most,
-                             const std::string& program = "",
-                             const std::function<std::string(RunId)>& link = nullptr);
+// [{feature, agreement, used, distinct, mixed}]: how far failures can be told apart.
+Table FailureGroupingsTable(const DistinctFailures& distinct);
+// A section for each grouping: "3 distinct failures by what happens, among 31 failing cases", with the `most`
+// toughest; and one for cases of which too few runs failed. Nothing when no case was confirmed.
+std::vector<Section> TellDistinctFailures(const CampaignAnswers& answers, std::size_t most,
+                                          const std::string& program = "",
+                                          const std::function<std::string(RunId)>& link = nullptr);
 
 }  // namespace gauntlet

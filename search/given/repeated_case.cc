@@ -91,6 +91,7 @@ SearchRow ConfirmationRow() {
           .make = Make<GivenSearch>,
           .purpose = sim::SeedPurpose::kConfirm,
           .question = AskForVerdict,
+          .reads_trajectories = true,
           .command = "confirm",
           .seeds_of_cases = true};
 }

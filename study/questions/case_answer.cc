@@ -9,17 +9,17 @@
 
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
+#include "controllers/registry.h"
 #include "master/campaign/stored_check.h"
 #include "master/directory/campaign_ownership.h"
 #include "proto/run_codec.h"
 #include "search/given/given_search.h"
 #include "search/search_table.h"
 #include "study/questions/questioned_cases.h"
+#include "study/sets/failure_mechanism.h"
 
 namespace gauntlet {
 namespace {
-
-constexpr double kStays = 0.05;  // m: a robot that drives covers five times as much between two waypoints
 
 Whereabouts WhereaboutsOf(const std::vector<sim::RobotSummary>& robots, bool failed,
                           const sim::Genome& obstacles) {
@@ -28,8 +28,7 @@ Whereabouts WhereaboutsOf(const std::vector<sim::RobotSummary>& robots, bool fai
   const bool any_lost = std::ranges::any_of(robots, &sim::RobotSummary::lost);
   for (const sim::RobotSummary& robot : robots) {
     for (std::size_t i = 1; i < robot.waypoints.size(); ++i) {
-      if ((robot.waypoints[i] - robot.waypoints[i - 1]).norm() < kStays)
-        where.stuck.push_back(robot.waypoints[i]);
+      if (StaysBetween(robot.waypoints[i - 1], robot.waypoints[i])) where.stuck.push_back(robot.waypoints[i]);
     }
     if (!failed || (any_lost && !robot.lost)) continue;
     ++where.failing_robots;
@@ -40,7 +39,8 @@ Whereabouts WhereaboutsOf(const std::vector<sim::RobotSummary>& robots, bool fai
   return where;
 }
 
-Result<CaseRun> RunOf(const StoredRun& stored, const RunJudge& judge, const Individual& layout, bool robots) {
+Result<CaseRun> RunOf(const StoredRun& stored, const RunJudge& judge,
+                      const controllers::ScenarioInfo& scenario, const Individual& layout, bool robots) {
   CaseRun run{.id = stored.id, .seed = stored.seed, .as_it_is = layout.parents.empty()};
   TRY(run.result, proto::DecodeStoredResult(stored.result));
   RunOutcome outcome{.verdict = run.result.verdict,
@@ -49,9 +49,12 @@ Result<CaseRun> RunOf(const StoredRun& stored, const RunJudge& judge, const Indi
                      .metrics = std::move(run.result.metrics)};
   if (robots) outcome.robots = std::exchange(run.result.robots, {});
   run.became = judge.WhatBecameOf(outcome, layout.test_case.obstacles);
-  if (robots && run.as_it_is)
-    run.whereabouts =
-        WhereaboutsOf(outcome.robots, run.became.tally.failures > 0, layout.test_case.obstacles);
+  if (robots && run.as_it_is) {
+    const bool failed = run.became.tally.failures > 0;
+    run.whereabouts = WhereaboutsOf(outcome.robots, failed, layout.test_case.obstacles);
+    if (failed)
+      run.whereabouts.mechanism = MechanismOf(scenario, layout.test_case, outcome.metrics, outcome.robots);
+  }
   run.result.metrics = std::move(outcome.metrics);
   run.result.robots.clear();
   return run;
@@ -75,11 +78,12 @@ Status AddAnswers(const SearchPlan& plan, std::size_t number, bool finished, Res
                        .key = key(*experiment, one.test_case)});
   }
   const RunJudge judge(*experiment);
+  const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(*experiment);
   TRY(store.ForEachRun(id, 0, [&](const StoredRun& stored) -> Status {
     if (stored.individual < 1 || stored.individual > layouts.size()) return Ok{};
     const Individual& layout = layouts[static_cast<std::size_t>(stored.individual - 1)];
     const auto of_case = layout.parents.empty() ? layout.id : layout.parents.front();
-    TRY(CaseRun run, RunOf(stored, judge, layout, row.reads_trajectories));
+    TRY(CaseRun run, RunOf(stored, judge, scenario, layout, row.reads_trajectories));
     answers.at(first + static_cast<std::size_t>(of_case - 1)).runs.push_back(std::move(run));
     return Ok{};
   }));

@@ -21,6 +21,7 @@ struct Whereabouts {
   std::vector<sim::Vec2> stuck;        // m: where one stayed for 5 s
   std::uint64_t failing_robots = 0;    // of a run that failed: that were lost, or all, when none is ever lost
   std::vector<std::uint64_t> touched;  // [obstacle]: how many of these were at it
+  std::string mechanism;               // of a run that failed: MechanismOf
 };
 
 struct CaseRun {

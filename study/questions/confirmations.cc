@@ -1,8 +1,6 @@
 #include "study/questions/confirmations.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <span>
 #include <utility>
 
@@ -19,25 +17,6 @@
 
 namespace gauntlet {
 namespace {
-
-// 5 of 5 runs say less than 61 of 64.
-double Toughness(const Confirmation& one) {
-  return one.interval.low;
-}
-
-// Of what is left of the case; null when it was not minimised.
-const SmallestLayout* LayoutOf(const Confirmation& one, const std::vector<SmallestLayout>& layouts) {
-  const auto layout = std::ranges::find(layouts, one.run, &SmallestLayout::run);
-  return one.run == 0 || layout == layouts.end() ? nullptr : &*layout;
-}
-
-const SmallestLayout* Smaller(const SmallestLayout* one, const SmallestLayout* other) {
-  if (one == nullptr || other == nullptr) return one == nullptr ? other : one;
-  const auto obstacles = [](const SmallestLayout* layout) {
-    return layout->document.test_case.obstacles.size();
-  };
-  return obstacles(other) < obstacles(one) ? other : one;
-}
 
 Result<QuestionedCampaign> CasesToConfirm(const Asking& asking) {
   const bool elites = asking.Has("--elites");
@@ -127,28 +106,42 @@ Confirmation ConfirmationIn(const CaseAnswer& answer) {
                    .interval = {},
                    .middle = {},
                    .message = answer.Message(),
-                   .example = {}};
+                   .campaign = answer.campaign};
   one.verdict = VerdictOf(one.tally, ConfirmationReplicates(experiment));
   one.interval = FailureInterval(one.tally);
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
-  if (scenario == nullptr || one.tally.failures == 0) return one;
-  const FailureWays ways_of(*scenario, experiment.scenario_parameters, answer.test_case);
+  if (one.tally.failures == 0) return one;
+  const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(experiment);
+  const FailurePlaces places(scenario, experiment.scenario_parameters, answer.test_case);
   const DescriptorGrid grid(CellsOf(experiment));
-  std::vector<FailureWay> ways;
-  std::vector<RunId> failed;
-  std::vector<Descriptor> described;  // those of them that could be
+  std::vector<Descriptor> described;  // those of the failed runs that could be
   for (const CaseRun& run : answer.runs) {
     if (run.became.tally.failures == 0) continue;
-    ways.push_back(ways_of.Of(run.result.metrics));
-    failed.push_back(run.id);
+    one.failed.push_back({run.id, {run.whereabouts.mechanism, places.Of(run.result.metrics)}});
     if (auto failure = grid.Describe({.metrics = run.result.metrics}))
       described.push_back(*std::move(failure));
   }
   if (!described.empty()) one.middle = MiddleOf(described);
-  const std::size_t typical = TypicalWay(ways);
-  one.example = {experiment.scenario, ways[typical], answer.campaign, failed[typical],
-                 experiment.scenario_plugin};
   return one;
+}
+
+const FailedRun* Confirmation::Typical() const {
+  if (failed.empty()) return nullptr;
+  std::vector<std::string> mechanisms, places;
+  for (const FailedRun& one : failed) {
+    mechanisms.push_back(one.features.mechanism);
+    places.push_back(one.features.place);
+  }
+  const auto mechanism = LeadingOf(mechanisms);
+  const auto place = LeadingOf(places);
+  const auto agrees = [&](const FailedRun& one) {
+    return int{mechanism && one.features.mechanism == mechanism->value} +
+           int{place && one.features.place == place->value};
+  };
+  return &*std::ranges::max_element(failed, {}, agrees);
+}
+
+double Toughness(const Confirmation& one) {
+  return one.interval.low;
 }
 
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
@@ -163,43 +156,11 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
 
 const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations) {
   const Confirmation* toughest = nullptr;
-  for (const DistinctFailure& failure : DistinctFailures(confirmations, {})) {
-    for (const Confirmation* one : failure.cases) {
-      if (one->verdict != FailureVerdict::kFail || one->run == 0) continue;
-      if (toughest == nullptr || Toughness(*one) > Toughness(*toughest)) toughest = one;
-    }
+  for (const Confirmation& one : confirmations) {
+    if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
+    if (toughest == nullptr || Toughness(one) > Toughness(*toughest)) toughest = &one;
   }
   return toughest;
-}
-
-std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
-                                              const std::vector<SmallestLayout>& layouts) {
-  using NameAndPlugin = std::pair<std::string, std::string>;
-  std::map<NameAndPlugin, std::vector<const Confirmation*>> failed;  // by scenario
-  for (const Confirmation& one : confirmations) {
-    if (one.example) failed[{one.example->scenario, one.example->scenario_plugin}].push_back(&one);
-  }
-  std::vector<DistinctFailure> distinct;
-  for (auto& [name, cases] : failed) {
-    const controllers::ScenarioInfo* scenario = controllers::FindScenario(name.first, name.second);
-    if (scenario == nullptr) continue;
-    std::ranges::stable_sort(cases, std::greater(), [](const auto* one) { return Toughness(*one); });
-    std::vector<FailureWay> ways;
-    for (const Confirmation* one : cases) ways.push_back(one->example->way);
-    const std::vector<std::size_t> groups = GroupWays(*scenario, ways);
-    const std::size_t first = distinct.size();
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      if (first + groups[i] == distinct.size()) distinct.push_back({{}, DescribeWay(*scenario, ways[i])});
-      DistinctFailure& failure = distinct[first + groups[i]];
-      failure.cases.push_back(cases[i]);
-      failure.confirmed = failure.confirmed || cases[i]->verdict == FailureVerdict::kFail;
-      failure.smallest = Smaller(failure.smallest, LayoutOf(*cases[i], layouts));
-    }
-  }
-  std::ranges::stable_sort(distinct, std::greater(), [](const DistinctFailure& one) {
-    return std::pair(Toughness(*one.cases.front()), one.cases.size());
-  });
-  return distinct;
 }
 
 Result<CampaignAnswers> ReadAnswers(const std::string& dir) {

@@ -19,6 +19,11 @@
 
 namespace gauntlet {
 
+struct FailedRun {
+  RunId id = 0;
+  FailureFeatures features = {};
+};
+
 struct Confirmation {
   std::string name;       // of the case, as in CaseAnswer
   RunId run = 0;          // that it is the case of; 0 when it came from a file
@@ -29,15 +34,10 @@ struct Confirmation {
   // Of its failed runs, along the scenario's descriptor axes. Nothing when none could be described.
   std::optional<Descriptor> middle;
   std::string message;  // of the first run that ended without a result; "" = none did
-  // How most of its failed runs failed, and the one that shows it best. Nothing when none failed.
-  struct Example {
-    std::string scenario;
-    FailureWay way;
-    std::string campaign;  // its directory
-    RunId run = 0;
-    std::string scenario_plugin = "";  // that brings the scenario, as in Experiment
-  };
-  std::optional<Example> example;
+  std::vector<FailedRun> failed = {};
+  std::string campaign = "";  // the directory that holds its runs
+  // Of the failed runs the first that fails as most of them do; null: none failed.
+  const FailedRun* Typical() const;
 };
 // The same for the same case under the same experiment, whatever it is called and however many runs are asked
 // for.
@@ -47,22 +47,12 @@ Confirmation ConfirmationIn(const CaseAnswer& answer);
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
 
-// Of the confirmed cases that a run names, that with the highest lower bound of its failure probability, of
-// equal ones the first in the list of distinct failures; null: there is none. All that tells of a toughest
-// case means this one, once cases were confirmed.
+// By which cases are ordered: the lower bound of the failure probability, so that 5 of 5 runs say less than
+// 61 of 64.
+double Toughness(const Confirmation& one);
+// Of the confirmed cases that a run names, the toughest; of equal ones the first. Null: there is none. All
+// that tells of a toughest case means this one, once cases were confirmed.
 const Confirmation* ToughestOf(const std::vector<Confirmation>& confirmations);
-
-// Cases that failed with fresh seeds and are one and the same failure.
-struct DistinctFailure {
-  std::vector<const Confirmation*> cases;  // the toughest first, as in ToughestOf
-  std::string what;                        // of the toughest one, in words
-  bool confirmed = false;                  // at least one of the cases
-  // Of what `gauntlet minimise` has left of the cases, the one with the fewest obstacles; null: of none.
-  const SmallestLayout* smallest = nullptr;
-};
-// The toughest first, of equally tough ones that with most cases. The arguments must outlive them.
-std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
-                                              const std::vector<SmallestLayout>& layouts);
 
 // With keys for programs: [{run, case, k, n, interval: [lo, hi], verdict, message}]; run is null for a case
 // from a file.

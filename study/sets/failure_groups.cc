@@ -4,71 +4,90 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <map>
 
-#include "analysis/statistics/clusters.h"
+#include "analysis/statistics/comparison.h"
+#include "analysis/statistics/proportions.h"
 
 namespace gauntlet {
 namespace {
 
-// 0 for two ways without a place; ways that cannot be one failure are infinitely far apart.
-double Distance(const FailureWay& a, const FailureWay& b) {
-  if (a.kind != b.kind || a.place.has_value() != b.place.has_value())
-    return std::numeric_limits<double>::infinity();
-  return a.place ? (*a.place - *b.place).norm() : 0.0;
+// Values and how many have them, without "".
+std::map<std::string, int> CountsOf(std::span<const std::string> values) {
+  std::map<std::string, int> counts;
+  for (const std::string& value : values) {
+    if (!value.empty()) ++counts[value];
+  }
+  return counts;
 }
 
 }  // namespace
 
-FailureWays::FailureWays(const controllers::ScenarioInfo& scenario,
-                         const sim::Parameters& scenario_parameters, const sim::TestCase& test_case)
+FailurePlaces::FailurePlaces(const controllers::ScenarioInfo& scenario,
+                             const sim::Parameters& scenario_parameters, const sim::TestCase& test_case)
     : descriptor_(scenario.failures) {
   if (scenario.failures.passages) passages_ = scenario.failures.passages(scenario_parameters, test_case);
 }
 
-FailureWay FailureWays::Of(controllers::MetricValues metrics) const {
-  FailureWay way{descriptor_.KindOf(metrics), descriptor_.PlaceOf(metrics)};
-  if (!way.place || passages_.empty()) return way;
-  const auto distance = [&](const sim::Vec2& passage) { return (passage - *way.place).norm(); };
-  way.place = *std::ranges::min_element(passages_, {}, distance);
-  return way;
+std::string FailurePlaces::Of(controllers::MetricValues metrics) const {
+  std::optional<sim::Vec2> place = descriptor_.PlaceOf(metrics);
+  if (!place) return "";
+  const auto distance = [&](const sim::Vec2& passage) { return (passage - *place).norm(); };
+  if (!passages_.empty()) place = *std::ranges::min_element(passages_, {}, distance);
+  const double side = descriptor_.SameWithin();
+  const auto shown = [&](double metres) { return side * std::round(metres / side) + 0.0; };  // no "-0.0"
+  return fmt::format("near ({:.1f}, {:.1f})", shown(place->x()), shown(place->y()));
 }
 
-std::size_t TypicalWay(std::span<const FailureWay> ways) {
-  const auto alike = [&](const FailureWay& way) {
-    return std::ranges::count_if(ways, [&](const FailureWay& other) {
-      return other.kind == way.kind && other.place.has_value() == way.place.has_value();
-    });
-  };
-  const auto scatter = [&](const FailureWay& way) {
-    double sum = 0.0;
-    for (const FailureWay& other : ways) {
-      if (const double distance = Distance(way, other); distance < std::numeric_limits<double>::infinity())
-        sum += distance;
-    }
-    return sum;
-  };
-  const auto typical = std::ranges::min_element(
-      ways, {}, [&](const FailureWay& way) { return std::pair(-alike(way), scatter(way)); });
-  return static_cast<std::size_t>(typical - ways.begin());
-}
-
-std::vector<std::size_t> GroupWays(const controllers::ScenarioInfo& scenario,
-                                   std::span<const FailureWay> ways) {
-  return analysis::GroupByDistance(
-      ways.size(), [&](std::size_t a, std::size_t b) { return Distance(ways[a], ways[b]); },
-      scenario.failures.SameWithin());
-}
-
-std::string DescribeWay(const controllers::ScenarioInfo& scenario, const FailureWay& way) {
-  std::string text;
-  if (way.kind < scenario.failures.kinds.size()) text = scenario.failures.kinds[way.kind].what;
-  if (way.place) {
-    const auto shown = [](double metres) { return std::round(10.0 * metres) / 10.0 + 0.0; };  // no "-0.0"
-    text += fmt::format("{}near ({:.1f}, {:.1f})", text.empty() ? "" : ", ", shown(way.place->x()),
-                        shown(way.place->y()));
+std::optional<LeadingFeature> LeadingOf(std::span<const std::string> values) {
+  LeadingFeature leading;
+  for (const auto& [value, runs] : CountsOf(values)) {
+    leading.of += runs;
+    if (runs <= leading.runs) continue;
+    leading.value = value;
+    leading.runs = runs;
   }
-  return text.empty() ? "a failure" : text;
+  if (leading.of == 0) return std::nullopt;
+  const analysis::Interval share =
+      analysis::WilsonInterval(static_cast<std::uint32_t>(leading.runs),
+                               static_cast<std::uint32_t>(leading.of), analysis::kConfidence);
+  leading.leads = leading.of >= static_cast<int>(kRunsForGroup) && share.low > 0.5;
+  return leading;
+}
+
+std::optional<double> AgreementWithin(std::span<const std::vector<std::string>> cases) {
+  // Of two runs that are drawn from one case, and of two from cases that are drawn.
+  double within = 0.0, of_two_cases = 0.0, count = 0.0;
+  std::map<std::string, double> shares;  // of a value, summed over cases
+  double squares = 0.0;                  // of shares in one case, likewise
+  for (const std::vector<std::string>& values : cases) {
+    const std::map<std::string, int> counts = CountsOf(values);
+    double runs = 0.0, pairs = 0.0;
+    for (const auto& [value, many] : counts) {
+      runs += many;
+      pairs += many * (many - 1.0);
+    }
+    if (runs < 2.0) continue;
+    ++count;
+    within += pairs / (runs * (runs - 1.0));
+    for (const auto& [value, many] : counts) {
+      const double share = many / runs;
+      shares[value] += share;
+      squares += share * share;
+    }
+  }
+  if (count == 0.0) return std::nullopt;
+  within /= count;
+  if (count > 1.0) {
+    for (const auto& [value, sum] : shares) of_two_cases += sum * sum;
+    of_two_cases = (of_two_cases - squares) / (count * (count - 1.0));
+  } else {
+    of_two_cases = within;
+  }
+  constexpr double kRounding = 1e-12;
+  if (within > 1.0 - kRounding) return 1.0;
+  return (within - of_two_cases) / std::max(1.0 - of_two_cases, kRounding);
 }
 
 }  // namespace gauntlet

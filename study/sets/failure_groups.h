@@ -1,49 +1,59 @@
-// Which failures are one and the same: those of one kind at one place. Cases are told apart by what most of
-// their runs with fresh seeds did, because a single run may fail in another way by chance.
+// Which failures are one and the same. A failed run has features, each a function of that run alone; a case
+// has a feature where most of its failed runs agree. So no case changes the group of another.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "controllers/behaviour.h"
+#include "sim/arena/test_case.h"
 #include "sim/geometry/vec2.h"
 
 namespace gauntlet {
 
-// How a run failed, or most of the failed runs of a case.
-struct FailureWay {
-  std::size_t kind = 0;            // of FailureDescriptor::kinds
-  std::optional<sim::Vec2> place;  // one of the passages, where there are any
+// Of a failed run, in words; "" = not known.
+struct FailureFeatures {
+  std::string mechanism;  // what happened (failure_mechanism.h)
+  std::string place;      // where: "near (0.6, -1.2)"
 };
 
-// How the runs of a case fail.
-class FailureWays {
+// Where runs of a case fail.
+class FailurePlaces {
  public:
-  FailureWays(const controllers::ScenarioInfo& scenario, const sim::Parameters& scenario_parameters,
-              const sim::TestCase& test_case);
+  FailurePlaces(const controllers::ScenarioInfo& scenario, const sim::Parameters& scenario_parameters,
+                const sim::TestCase& test_case);
 
-  // `metrics`: of a run that failed.
-  FailureWay Of(controllers::MetricValues metrics) const;
+  // Of a run that failed: the middle of the square, as wide as FailurePlace::same_within and the same in
+  // every case, that holds its place, or the nearest of the case's passages. "" where it has none.
+  std::string Of(controllers::MetricValues metrics) const;
 
  private:
   const controllers::FailureDescriptor& descriptor_;
   std::vector<sim::Vec2> passages_;
 };
 
-// Of the ways of a case's failed runs, at least one, the number of that which stands for all: of the most
-// frequent kind, and in the middle of its places.
-std::size_t TypicalWay(std::span<const FailureWay> ways);
+// So many failed runs of a case are needed to say what group it is of.
+inline constexpr std::size_t kRunsForGroup = 10;
 
-// The group of each of these ways, one a case: of one kind, and no two places farther apart than
-// FailurePlace::same_within. Groups are numbered from 0 by their first way.
-std::vector<std::size_t> GroupWays(const controllers::ScenarioInfo& scenario,
-                                   std::span<const FailureWay> ways);
+// What most of a case's failed runs have in common.
+struct LeadingFeature {
+  std::string value;
+  int runs = 0;  // that have it
+  int of = 0;
+  // There are kRunsForGroup, and the share of those that have it has a lower bound above a half (Wilson, 95
+  // %).
+  bool leads = false;
+};
+// Nothing where no run's is known. Of equally frequent ones the first in the alphabet.
+std::optional<LeadingFeature> LeadingOf(std::span<const std::string> values);
 
-// In words: "near (0.3, -1.7)".
-std::string DescribeWay(const controllers::ScenarioInfo& scenario, const FailureWay& way);
+// How much more often two failed runs of one case agree than two of different cases, as a share of what is
+// possible (Cohen's kappa, each case with the same weight): 1 = always, 0 = no more often. 1 where all agree.
+// Cases with fewer than two runs say nothing; "" is no value. Nothing: no case says anything.
+std::optional<double> AgreementWithin(std::span<const std::vector<std::string>> cases);
+// A feature that agrees less does not name groups.
+inline constexpr double kLeastAgreement = 0.5;
 
 }  // namespace gauntlet

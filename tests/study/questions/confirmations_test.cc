@@ -11,7 +11,6 @@
 namespace gauntlet {
 namespace {
 
-using testing::ElementsAre;
 using testing::SizeIs;
 using namespace testing_support;  // NOLINT(google-build-using-namespace)
 
@@ -39,13 +38,14 @@ TEST(ConfirmationIn, HasTheVerdictAndTheRunThatShowsItBest) {
   EXPECT_EQ(fails.run, 4U);
   EXPECT_EQ(fails.tally.failures, 5);
   EXPECT_EQ(fails.verdict, FailureVerdict::kFail);
-  ASSERT_TRUE(fails.example.has_value());
-  EXPECT_EQ(fails.example->campaign, "d/asked/1");
-  EXPECT_TRUE(fails.example->way.place.has_value());
+  EXPECT_EQ(fails.campaign, "d/asked/1");
+  ASSERT_THAT(fails.failed, SizeIs(5));
+  EXPECT_EQ(fails.failed[0].features.place.substr(0, 5), "near ");
+  EXPECT_EQ(fails.Typical(), &fails.failed[0]);
   EXPECT_EQ(ConfirmationIn(answers[1]).verdict, FailureVerdict::kFlaky);
   const Confirmation passes = ConfirmationIn(answers[2]);
   EXPECT_EQ(passes.verdict, FailureVerdict::kPass);
-  EXPECT_FALSE(passes.example.has_value());
+  EXPECT_EQ(passes.Typical(), nullptr);
   EXPECT_EQ(ConfirmationIn(Confirmed(20)[1]).tally.runs(), 20);
 }
 
@@ -82,7 +82,6 @@ TEST(ToughestOf, IsThatOfTheHighestLowerBound) {
     Confirmation one{.run = run, .tally = {.failures = failures, .passes = passes}};
     one.verdict = FailureVerdict::kFail;
     one.interval = FailureInterval(one.tally);
-    one.example = {"flocking", {0, sim::Vec2{static_cast<double>(run), 0.0}}, "c/confirm/1", 7};
     return one;
   };
   const std::vector<Confirmation> known = {failed(1, 5, 0), failed(2, 95, 5), failed(0, 100, 0)};
@@ -90,33 +89,10 @@ TEST(ToughestOf, IsThatOfTheHighestLowerBound) {
   EXPECT_EQ(ToughestOf({}), nullptr);
 }
 
-TEST(DistinctFailures, AreByPlaceToughestFirstWithTheSmallestLayout) {
-  const auto failed = [](RunId run, int failures, sim::Vec2 place, FailureVerdict verdict) {
-    Confirmation one;
-    one.run = run;
-    one.tally = {.failures = failures, .passes = 10 - failures, .errors = 0};
-    one.interval = FailureInterval(one.tally);
-    one.verdict = verdict;
-    one.example = {"flocking", {0, place}, "c/confirm/1", 7};
-    return one;
-  };
-  const std::vector<Confirmation> known = {failed(1, 3, {1.0, 1.0}, FailureVerdict::kFlaky),
-                                           failed(2, 9, {1.0, 1.0}, FailureVerdict::kFail),
-                                           failed(3, 6, {-1.0, 0.5}, FailureVerdict::kFail), Confirmation{}};
-  SmallestLayout large, small;
-  large.run = 2;
-  large.document.test_case.obstacles.resize(4);
-  small.run = 1;
-  small.document.test_case.obstacles.resize(2);
-  const std::vector<SmallestLayout> layouts = {large, small};
-  const std::vector<DistinctFailure> distinct = DistinctFailures(known, layouts);
-  ASSERT_THAT(distinct, SizeIs(2));
-  EXPECT_THAT(distinct[0].cases, ElementsAre(&known[1], &known[0]));
-  EXPECT_TRUE(distinct[0].confirmed);
-  EXPECT_EQ(distinct[0].what, "near (1.0, 1.0)");
-  EXPECT_EQ(distinct[0].smallest, &layouts[1]);
-  EXPECT_THAT(distinct[1].cases, ElementsAre(&known[2]));
-  EXPECT_EQ(distinct[1].smallest, nullptr);
+TEST(Confirmation, ItsTypicalRunFailsAsMostOfItsRuns) {
+  Confirmation one;
+  one.failed = {{1, {"a", "x"}}, {2, {"b", "y"}}, {3, {"b", "x"}}, {4, {"b", "x"}}};
+  EXPECT_EQ(one.Typical()->id, 3U);
 }
 
 }  // namespace
