@@ -38,6 +38,7 @@ class CommandParser {
   CommandAction& chosen_;
 };
 
+void AddExamine(CommandParser& parser);
 void AddEvolve(CommandParser& parser);
 void AddRandom(CommandParser& parser);
 void AddResume(CommandParser& parser);
@@ -65,30 +66,12 @@ void AddStop(CommandParser& parser);
 void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
-inline constexpr void (*kCommands[])(CommandParser&) = {AddEvolve,
-                                                        AddRandom,
-                                                        AddResume,
-                                                        AddShow,
-                                                        AddReplay,
-                                                        AddQuestions,
-                                                        AddMargin,
-                                                        AddCorpus,
-                                                        AddCompare,
-                                                        AddStudy,
-                                                        AddTune,
-                                                        AddFit,
-                                                        AddReport,
-                                                        AddUi,
-                                                        AddFigure,
-                                                        AddExport,
-                                                        AddImport,
-                                                        AddAdopt,
-                                                        AddBuildController,
-                                                        AddSubmit,
-                                                        AddMaster,
-                                                        AddStatus,
-                                                        AddWatch,
-                                                        AddStop,
-                                                        AddList};
+inline constexpr void (*kCommands[])(CommandParser&) = {
+    AddExamine, AddEvolve,    AddRandom, AddResume, AddShow,
+    AddReplay,  AddQuestions, AddMargin, AddCorpus, AddCompare,
+    AddStudy,   AddTune,      AddFit,    AddReport, AddUi,
+    AddFigure,  AddExport,    AddImport, AddAdopt,  AddBuildController,
+    AddSubmit,  AddMaster,    AddStatus, AddWatch,  AddStop,
+    AddList};
 
 }  // namespace gauntlet

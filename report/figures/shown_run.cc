@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <set>
 #include <thread>
 
 #include <fmt/format.h>
 
+#include "master/directory/campaign_ownership.h"
 #include "report/figures/replayed_figure.h"
 
 namespace gauntlet {
@@ -62,6 +65,27 @@ Result<std::vector<ShownRun>> ShowAll(std::vector<StoredRun> runs,
   return all;
 }
 
+// Of the runs with these obstacles that with the lowest fitness, the first of equal ones; 0 = there is none.
+Result<RunId> ToughestRunOf(const std::string& campaign, const sim::Genome& obstacles) {
+  TRY(const CampaignView view, ViewCampaign(campaign, Checked::kRows));
+  TRY(const auto searches, view.store->LoadSearches());
+  RunId toughest = 0;
+  double fitness = std::numeric_limits<double>::infinity();
+  for (const StoredSearch& search : searches) {
+    TRY(const auto individuals, view.store->LoadIndividuals(search.id));
+    TRY(view.store->ForEachRow(search.id, 0, [&](const StoredRun& run) -> Status {
+      if (!run.completed() || run.fitness >= fitness || run.individual < 1 ||
+          run.individual > individuals.size() ||
+          individuals[run.individual - 1].test_case.obstacles != obstacles)
+        return Ok{};
+      toughest = run.id;
+      fitness = run.fitness;
+      return Ok{};
+    }));
+  }
+  return toughest;
+}
+
 }  // namespace
 
 std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most) {
@@ -98,6 +122,19 @@ Result<std::vector<ShownRun>> ShowTypicalRuns(const CampaignFacts& facts,
     all.push_back(std::move(runs.front()));
   }
   return ShowAll(std::move(all), [&](const StoredRun&) { return facts.plans.front().experiment.name; });
+}
+
+Result<std::map<RunId, ShownRun>> ShowSmallest(const CampaignFacts& facts,
+                                               const std::vector<const SmallestLayout*>& layouts) {
+  std::map<RunId, ShownRun> shown;
+  for (const SmallestLayout* one : layouts) {
+    const std::string campaign = std::filesystem::path(one->file).parent_path().string();
+    TRY(const RunId run, ToughestRunOf(campaign, one->document.test_case.obstacles));
+    if (run == 0) continue;
+    TRY(auto runs, ReadRuns(campaign, {run}));
+    TRY(shown[one->run], ShowRun(facts.plans.front().experiment.name, std::move(runs.front())));
+  }
+  return shown;
 }
 
 }  // namespace gauntlet

@@ -1,6 +1,7 @@
 // Runs of a campaign that are simulated again to be seen.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,9 @@ Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::ve
 // The same of the typical runs of distinct failures, which stand in the campaigns that confirmed their cases.
 Result<std::vector<ShownRun>> ShowTypicalRuns(const CampaignFacts& facts,
                                               const std::vector<const DistinctFailure*>& failures);
+// The toughest of the runs in which minimising has simulated what is left of each case, by
+// SmallestLayout::run; without those of which none is there.
+Result<std::map<RunId, ShownRun>> ShowSmallest(const CampaignFacts& facts,
+                                               const std::vector<const SmallestLayout*>& layouts);
 
 }  // namespace gauntlet

@@ -123,6 +123,33 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
   return html + "</ul>\n";
 }
 
+std::string SmallestLayoutsHtml(const CampaignPages& pages, std::size_t number) {
+  const CampaignAnswers& answers = pages.facts.answers;
+  std::string html;
+  for (const SmallestLayout* layout : SmallestFirst(answers.smallest_layouts, pages.smallest.size())) {
+    const auto run = pages.smallest.find(layout->run);
+    if (run == pages.smallest.end() || run->second.figure.result.trajectory.empty()) continue;
+    const auto known = std::ranges::find(answers.confirmations, layout->run, &Confirmation::run);
+    const FailedRun* typical = known == answers.confirmations.end() ? nullptr : known->Typical();
+    const std::string what =
+        typical == nullptr || typical->features.mechanism.empty() ? "" : "; " + typical->features.mechanism;
+    html += fmt::format(
+        "<li><img alt=\"\" width=\"220\" height=\"220\" src=\"{}\">{}: fails in {} runs{} ({})</li>\n",
+        DataUri(analysis::DrawThumbnail(run->second.figure, kTypicalPixels)),
+        Counted(layout->document.test_case.obstacles.size(), "obstacle"),
+        OutOf(layout->document.lineage->verified), Html(what),
+        CaseLink(pages, number, fmt::format("run {}", layout->run), layout->run));
+  }
+  if (html.empty()) return "";
+  return fmt::format(
+      "<h3>The smallest layouts that break it</h3>\n<p>What is left of a case when every obstacle that is "
+      "not "
+      "needed is taken away, and a run in it: the trajectories of robots that did well are blue, of those "
+      "that "
+      "were lost red.</p>\n<ul class=\"thumbs pairs\">\n{}</ul>\n",
+      html);
+}
+
 std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case) {
   std::string html;
   for (const ToldCase& one : facts.told_cases) {

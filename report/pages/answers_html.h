@@ -12,6 +12,8 @@ namespace gauntlet {
 std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number);
 // Cases that were made smaller, each beside what is left of it; "" when there are none.
 std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number);
+// The smallest layouts that break the swarm, each with a run in it; "" when there are none.
+std::string SmallestLayoutsHtml(const CampaignPages& pages, std::size_t number);
 // What questions about the case were answered with, a section each; "" when nobody asked.
 std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case);
 

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace gauntlet {
+namespace {
+
+constexpr std::size_t kMostSmallest = 3;  // layouts that an overview begins with
+
+}  // namespace
 
 bool CampaignPages::HasPage(RunId run) const {
   if (every_run) return run != 0;
@@ -24,6 +29,8 @@ Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown
   auto failures = distinct.All();
   failures.resize(std::min(failures.size(), most_shown));
   TRY(pages.typical, ShowTypicalRuns(pages.facts, failures));
+  TRY(pages.smallest, ShowSmallest(pages.facts, SmallestFirst(answers.smallest_layouts,
+                                                              std::min(most_shown, kMostSmallest))));
   return pages;
 }
 

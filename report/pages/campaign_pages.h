@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ struct CampaignPages {
   std::vector<SearchCourse> courses;
   std::vector<RunMap> maps;
   std::vector<ShownRun> shown;
-  std::vector<ShownRun> typical;  // of the first distinct failures, in the order of DistinctFailures::All
-  bool every_run = false;         // others than those shown can be had too: pages that are served
+  std::vector<ShownRun> typical =
+      {};  // of the first distinct failures, in the order of DistinctFailures::All
+  std::map<RunId, ShownRun> smallest = {};  // by the run whose case was made smaller
+  bool every_run = false;                   // others than those shown can be had too: pages that are served
 
   bool HasPage(RunId run) const;
   // "#run-0-981", of the campaign of this number; "" where the run has no page.

@@ -163,6 +163,7 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
     for (const std::string& note : facts.notes) html += fmt::format("<li>{}</li>\n", Html(note));
     html += "</ul>\n";
   }
+  html += SmallestLayoutsHtml(pages, number);
   const bool of_settings = facts.fit || !facts.margins.empty();
   html += of_settings ? SettingsHtml(facts) : DistinctFailuresHtml(pages, number);
   html += fmt::format(

@@ -162,7 +162,6 @@ Result<std::vector<std::string>> CampaignsNamed(const std::vector<std::string>& 
 std::string ReportPage(const Report& report) {
   std::string overview;
   for (const StudyPages& study : report.studies) overview += StudyOverviewHtml(study);
-  overview += CampaignsTable(report);
   std::string failures;
   std::string cases;
   for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
@@ -170,6 +169,7 @@ std::string ReportPage(const Report& report) {
     failures += FailuresHtml(report.campaigns[i], i);
     cases += CasesHtml(report.campaigns[i], i);
   }
+  overview += CampaignsTable(report);
   const SetComparisons& comparisons = report.comparisons;
   if (comparisons.comparisons.empty()) overview += ComparisonHtml({}, comparisons.notes);
   const OtherPages others = OtherPagesOf(report);

@@ -32,7 +32,9 @@ Section TellGrouping(const FailureGrouping& grouping, int told, std::size_t most
   if (!grouping.Used())
     return {.title = fmt::format("{} does not tell these failures apart", grouping.title),
             .sentences = {fmt::format("Failed runs of one case agree in it by {}, which takes {} at least.",
-                                      agreement, kLeastAgreement)}};
+                                      agreement, kLeastAgreement),
+                          fmt::format("Most frequent: {}, in {} of {} failed runs.", grouping.overall->value,
+                                      grouping.overall->runs, grouping.overall->of)}};
   std::vector<const DistinctFailure*> groups;
   for (const DistinctFailure& one : grouping.groups) groups.push_back(&one);
   Section section{

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/statistics/comparison.h"
+#include "analysis/statistics/proportions.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "master/campaign/stored_campaign.h"
@@ -211,32 +213,52 @@ std::vector<Section> TellMargins(const std::vector<Margin>& margins, const std::
   return sections;
 }
 
-std::string MarginJson(const std::vector<Margin>& margins, const std::string& dir) {
-  nlohmann::ordered_json keys = nlohmann::ordered_json::array();
+nlohmann::ordered_json MarginValues(const std::vector<Margin>& margins) {
+  using Json = nlohmann::ordered_json;
+  Json keys = Json::array();
   constexpr const char* kSides[] = {"within", "below_everywhere", "above_everywhere", "undecided"};
   for (const Margin& one : margins) {
-    const MarginEstimate& e = one.estimate.value_or(MarginEstimate{});
-    const auto number = [&](double value) { return JsonValue(NumberValue(one.estimate ? value : NAN)); };
+    const MarginEstimate e = one.estimate.value_or(MarginEstimate{});
+    const auto number = [](double value) { return JsonValue(NumberValue(value)); };
+    Json points = Json::array();
+    for (const MarginLevel& level : e.levels) {
+      const auto interval =
+          analysis::WilsonInterval(static_cast<std::uint32_t>(level.failures),
+                                   static_cast<std::uint32_t>(level.runs), analysis::kConfidence);
+      points.push_back({{"value", level.value},
+                        {"k", level.failures},
+                        {"n", level.runs},
+                        {"interval", {interval.low, interval.high}},
+                        {"fit", level.fit}});
+    }
     keys.push_back({{"key", one.plan.key.key.path},
+                    {"share", one.plan.share},
+                    {"threshold", one.estimate ? Json{{"value", number(e.estimate)},
+                                                      {"interval", {number(e.low), number(e.high)}}}
+                                               : Json()},
                     {"low", one.plan.key.low},
                     {"high", one.plan.key.high},
                     {"logarithmic", one.plan.key.log},
                     {"crosses", kSides[static_cast<int>(SideOf(one))]},
-                    {"estimate", number(e.estimate)},
-                    {"interval", {number(e.low), number(e.high)}},
                     {"falls", e.falls},
                     {"design_effect", e.design_effect},
                     {"rank", one.rank},
                     {"runs", one.runs},
                     {"without_result", one.without_result},
-                    {"levels", LevelTable(one).ToJson()},
+                    {"points", std::move(points)},
                     {"outcome", OutcomeOf(one)}});
   }
-  return JsonText({{"directory", dir},
-                   {"finished", std::ranges::all_of(margins, &Margin::finished)},
-                   {"share", margins.front().plan.share},
-                   {"cases", margins.front().plan.cases},
-                   {"keys", std::move(keys)}});
+  return keys;
+}
+
+std::string MarginJson(const std::vector<Margin>& margins, const std::string& dir) {
+  nlohmann::ordered_json keys = MarginValues(margins);
+  nlohmann::ordered_json json({{"directory", dir},
+                               {"finished", std::ranges::all_of(margins, &Margin::finished)},
+                               {"cases", margins.front().plan.cases}});
+  if (keys.size() == 1) json.update(keys.front());
+  json["keys"] = std::move(keys);
+  return JsonText(json);
 }
 
 }  // namespace gauntlet

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "analysis/tables/section.h"
 #include "base/result.h"
 #include "search/margin/margin_stages.h"
@@ -32,6 +34,10 @@ void RankMargins(std::vector<Margin>& margins);
 std::string OutcomeOf(const Margin& margin);
 std::vector<Section> TellMargins(const std::vector<Margin>& margins, const std::string& dir,
                                  const std::string& program);
+// [{key, share, threshold: {value, interval} or null, runs, points: [{value, k, n, interval, fit}], ...}];
+// ends of an interval that may lie outside the range are null.
+nlohmann::ordered_json MarginValues(const std::vector<Margin>& margins);
+// {directory, finished, cases, keys: MarginValues}; of one key its values also beside these.
 std::string MarginJson(const std::vector<Margin>& margins, const std::string& dir);
 // A line for each value: runs, failures, the fit.
 Table LevelTable(const Margin& margin);

@@ -52,6 +52,9 @@ FailureGrouping Grouped(FailureGrouping grouping, Feature feature,
   std::vector<std::vector<std::string>> values;
   for (const Confirmation* one : toughest_first) values.push_back(ValuesOf(*one, feature));
   grouping.agreement = AgreementWithin(values);
+  std::vector<std::string> all;
+  for (const std::vector<std::string>& some : values) all.insert(all.end(), some.begin(), some.end());
+  grouping.overall = LeadingOf(all);
   if (!grouping.Used()) return grouping;
   int told = 0;
   for (std::size_t i = 0; i < toughest_first.size(); ++i) {

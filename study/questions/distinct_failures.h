@@ -34,6 +34,7 @@ struct FailureGrouping {
   const char* phrase = "";          // "what happens"
   const char* unknown = "";         // why no run's is known, a sentence
   std::optional<double> agreement;  // AgreementWithin; nothing: no run's is known
+  std::optional<LeadingFeature> overall = {};  // of all failed runs together
   // The toughest first, of equally tough ones that with most cases. None where runs of a case agree too
   // little.
   std::vector<DistinctFailure> groups = {};

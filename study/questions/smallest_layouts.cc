@@ -65,4 +65,15 @@ Result<std::vector<SmallestLayout>> ReadSmallestLayouts(const std::string& dir) 
   return all;
 }
 
+std::vector<const SmallestLayout*> SmallestFirst(const std::vector<SmallestLayout>& layouts,
+                                                 std::size_t most) {
+  std::vector<const SmallestLayout*> first;
+  for (const SmallestLayout& one : layouts) first.push_back(&one);
+  std::ranges::stable_sort(first, {}, [](const SmallestLayout* one) {
+    return std::pair(one->document.test_case.obstacles.size(), -one->document.lineage->verified.failures);
+  });
+  first.resize(std::min(first.size(), most));
+  return first;
+}
+
 }  // namespace gauntlet

@@ -31,5 +31,8 @@ struct SmallestLayout {
 // What is left of the cases of runs of the campaign in `dir`, in the order of the runs; of a case that was
 // minimised more than once what has the fewest obstacles. Error: a file does not read, which it names.
 Result<std::vector<SmallestLayout>> ReadSmallestLayouts(const std::string& dir);
+// The `most` with the fewest obstacles, of equally small ones first that which fails most.
+std::vector<const SmallestLayout*> SmallestFirst(const std::vector<SmallestLayout>& layouts,
+                                                 std::size_t most);
 
 }  // namespace gauntlet

@@ -77,6 +77,7 @@ TEST(DistinctFailuresTest, WhatTellsNothingApartIsSaid) {
       "\nWhat happens does not tell these failures apart\n"
       "  Failed runs of one case agree in it by 0.00 (kappa: 0 = no more often than runs of different cases, "
       "1 =\n  always), which takes 0.5 at least.\n"
+      "  Most frequent: got lost, in 5 of 10 failed runs.\n"
       "\nWhere it happens is not known of these failures\n"
       "  The scenario declares no place that its runs fail at.\n");
 }

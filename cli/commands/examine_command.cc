@@ -1,0 +1,281 @@
+// gauntlet examine: from a controller to an answer, by the other commands.
+#include <filesystem>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/duration_text.h"
+#include "base/number_text.h"
+#include "base/parse_number.h"
+#include "base/printable.h"
+#include "base/shell_quoted.h"
+#include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/examination_output.h"
+#include "cli/output/output_file.h"
+#include "master/campaign/forecast.h"
+#include "master/directory/campaign_directory.h"
+#include "proto/json_text.h"
+#include "report/pages/report_page.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
+#include "study/examination_plan.h"
+#include "study/questions/distinct_failures.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+using Command = std::vector<std::string>;
+
+constexpr std::size_t kExaminedRuns = 30;  // of the page
+
+struct ExamineOptions : LocalOptions {
+  std::string budget;
+  std::string out;
+};
+
+// The same commands as somebody would type, one after the other. What is there already is gone on with.
+class Examination {
+ public:
+  Examination(CommandContext& context, const ExamineOptions& options, std::string directory,
+              ExaminationPlan plan)
+      : context_(context), options_(options), directory_(std::move(directory)), plan_(std::move(plan)) {}
+
+  // The first ones; which follow depends on what these find.
+  std::vector<Command> Searches() const {
+    std::vector<Command> commands = {
+        New("random", "/random", {"--cases", fmt::format("{}", plan_.random_cases)}),
+        New("evolve", "/search",
+            {"--set", "search.algorithm=archive", "--set", fmt::format("search.runs={}", plan_.search_runs)}),
+        {"baseline", directory_ + "/search"},
+        {"confirm", directory_ + "/search", "--elites", "--replicates", fmt::format("{}", plan_.replicates)}};
+    return commands;
+  }
+  std::vector<Command> Margins() const {
+    if (plan_.vary.empty()) return {};
+    std::vector<std::string> more = {"--budget", fmt::format("{}", plan_.margin_runs)};
+    for (const std::string& key : plan_.vary) more.insert(more.end(), {"--vary", key});
+    return {New("margin", "/margins", more)};
+  }
+
+  // Exit 0 when the whole examination is there.
+  Result<ExitCode> Run() {
+    for (const Command& command : Searches()) {
+      if (command.front() == "confirm" && !FoundSomething()) continue;
+      TRY(const ExitCode code, Step(command));
+      if (code != kExitDone) return code;
+    }
+    TRY(const std::vector<RunId> runs, ToughestRuns());
+    for (const RunId run : runs) {
+      for (const char* question : {"minimise", "blame"}) {
+        TRY(const ExitCode code, Step({question, directory_ + "/search", fmt::format("{}", run)}));
+        if (code != kExitDone && code != kExitNegative) return code;
+      }
+    }
+    for (const Command& command : Margins()) {
+      TRY(const ExitCode code, Step(command));
+      if (code != kExitDone) return code;
+    }
+    return kExitDone;
+  }
+
+ private:
+  Command New(const std::string& name, const std::string& folder,
+              const std::vector<std::string>& more) const {
+    Command command = {name, options_.experiment.experiment};
+    const auto add = [&](const char* option, const std::vector<std::string>& values) {
+      for (const std::string& value : values) command.insert(command.end(), {option, value});
+    };
+    add("--set", options_.experiment.sets);
+    add("--plugin", options_.experiment.plugins);
+    add("--allow-file", options_.experiment.allowed_files);
+    if (!options_.experiment.seed.empty()) add("--seed", {options_.experiment.seed});
+    command.insert(command.end(), more.begin(), more.end());
+    add("--dir", {directory_ + folder});
+    return command;
+  }
+
+  // What it prints is told at the end; how it goes on is shown meanwhile.
+  Result<ExitCode> Step(const Command& command) {
+    Command whole = command;
+    const auto dir = std::ranges::find(whole, "--dir");
+    if (dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1))) whole = {"resume", *(dir + 1)};
+    if (!options_.running.workers.empty()) whole.insert(whole.end(), {"--workers", options_.running.workers});
+    if (options_.running.quiet) whole.push_back("--quiet");
+    if (options_.running.no_progress) whole.push_back("--no-progress");
+    if (!options_.running.quiet)
+      PrintMessage(context_, fmt::format("step {}: {}", ++steps_, fmt::join(Quoted(command), " ")));
+    std::ostringstream told;
+    CommandContext inner{.out = told,
+                         .err = context_.err,
+                         .err_is_terminal = context_.err_is_terminal,
+                         .out_is_terminal = false,
+                         .program = context_.program,
+                         .campaigns = context_.campaigns,
+                         .slurm = context_.slurm};
+    return RunCommandLine(whole, inner);
+  }
+
+  static Command Quoted(const Command& command) {
+    Command quoted;
+    for (const std::string& one : command) quoted.push_back(ShellQuoted(one));
+    return quoted;
+  }
+
+  bool FoundSomething() const {
+    const Result<CampaignFacts> facts = ReadFacts(directory_ + "/search");
+    const SearchSummary* only = facts ? facts->summary.OnlySearch() : nullptr;
+    return only == nullptr || !only->archive.failures.empty();
+  }
+
+  // The toughest case of each distinct failure, those by mechanism first.
+  Result<std::vector<RunId>> ToughestRuns() const {
+    TRY(const auto confirmations, ReadConfirmations(directory_ + "/search"));
+    const DistinctFailures distinct = DistinctFailuresOf(confirmations, {});
+    std::vector<RunId> runs;
+    const auto add = [&](const Confirmation& one) {
+      if (one.run == 0 || one.verdict != FailureVerdict::kFail || runs.size() == plan_.minimised) return;
+      if (std::ranges::count(runs, one.run) == 0) runs.push_back(one.run);
+    };
+    for (const DistinctFailure* failure : distinct.All()) add(*failure->cases.front());
+    if (const Confirmation* toughest = ToughestOf(confirmations)) add(*toughest);
+    return runs;
+  }
+
+  CommandContext& context_;
+  const ExamineOptions& options_;
+  const std::string directory_;
+  const ExaminationPlan plan_;
+  int steps_ = 0;
+};
+
+Result<std::uint64_t> BudgetOf(const std::string& text) {
+  if (text.empty()) return std::uint64_t{0};
+  const auto runs = ParseNumber<std::uint64_t>(text);
+  if (runs && *runs > 0) return *runs;
+  return InvalidInput(fmt::format("--budget {}: give a whole number of runs", Printable(text)));
+}
+
+// An examination of something else does not go on where this one is kept.
+Status Claim(const std::string& directory, const std::string& what) {
+  const std::string path = directory + "/examination.toml";
+  std::error_code error;
+  if (fs::exists(path, error)) {
+    TRY(const std::string there, ReadRegularFile(path));
+    if (there == what) return Ok{};
+    return InvalidInput(
+        fmt::format("{} holds an examination of another experiment or budget: another --dir keeps "
+                    "this one",
+                    directory));
+  }
+  if (fs::exists(directory, error) && !fs::is_empty(directory, error))
+    return InvalidInput(fmt::format("{} holds something else: --dir names a new directory", directory));
+  fs::create_directories(directory, error);
+  if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", directory, error.message())};
+  return ReplaceFile(path, what, kReadableByAll);
+}
+
+Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& options,
+                           const Experiment& experiment, const ExaminationPlan& plan,
+                           const Examination& examination) {
+  Experiment search = experiment;
+  search.search.algorithm = "random";
+  TRY(const Forecast forecast, MakeForecast({{"", search, {}}}));
+  TRY(const int workers, ParseWorkers(options.running.workers));
+  const double seconds = forecast.seconds_per_run * static_cast<double>(plan.runs) / workers;
+  std::vector<Command> commands = examination.Searches();
+  for (const Command& one : examination.Margins()) commands.push_back(one);
+  if (options.running.json) {
+    context.out << JsonText({{"runs", plan.runs},
+                             {"workers", workers},
+                             {"seconds", seconds},
+                             {"cpu_seconds_per_run", forecast.seconds_per_run},
+                             {"commands", commands},
+                             {"not_varied", plan.unvaried}})
+                << std::flush;
+    return kExitDone;
+  }
+  Section section{.title = fmt::format("{}: a dry run, nothing was made", experiment.name)};
+  section.lead = {fmt::format("About {} runs, {} with {} ({} of the first runs took {:.3g} ms each here).",
+                              FormatCount(plan.runs), FormatDuration(seconds), Counted(workers, "worker"),
+                              forecast.measured_runs, 1e3 * forecast.seconds_per_run)};
+  for (const Command& one : commands) {
+    std::string line = context.program;
+    for (const std::string& word : one) line += " " + ShellQuoted(word);
+    section.commands.push_back({line, ""});
+  }
+  context.out << ToText(section) << std::flush;
+  return kExitDone;
+}
+
+Status WritePage(const ExaminationFacts& facts, const std::string& directory, OutputFile& file) {
+  TRY(Report report, GatherReport({facts.search.directory}, kExaminedRuns));
+  if (!facts.margins.empty()) {
+    TRY(CampaignPages margins, GatherPages(directory + "/margins", 0));
+    report.campaigns.push_back(std::move(margins));
+  }
+  TRY(file.Write(ReportPage(report)));
+  return file.Close();
+}
+
+Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& options) {
+  TRY(const std::uint64_t budget, BudgetOf(options.budget));
+  TRY(const Experiment experiment,
+      LoadExperimentWith(options.experiment, {{"examine", "search.algorithm", "archive"}}));
+  TRY(const ExaminationPlan plan, PlanExamination(experiment, budget));
+  const std::string directory = options.experiment.directory.empty()
+                                    ? fmt::format("campaigns/{}-examined", experiment.name)
+                                    : options.experiment.directory;
+  Examination examination(context, options, directory, plan);
+  if (options.dry_run) return PrintPlan(context, options, experiment, plan, examination);
+  TRY(OutputFile page, OutputFile::Open(options.out));
+  TRY(Claim(directory, WriteExperiment(experiment, {fmt::format("{} runs", plan.runs)}, BuiltInCatalogue())));
+  if (!plan.unvaried.empty() && !options.running.quiet)
+    PrintMessage(context, fmt::format("too few runs to look at {}: a larger --budget does",
+                                      fmt::join(plan.unvaried, ", ")));
+  TRY(const ExitCode code, examination.Run());
+  if (code != kExitDone) {
+    if (code == kExitStopped) PrintMessage(context, "go on with the whole examination: the same command");
+    return code;
+  }
+  TRY(const ExaminationFacts facts, ReadExamination(directory));
+  TRY(WritePage(facts, directory, page));
+  context.out << (options.running.json ? ExaminationJson(facts, directory, options.out)
+                                       : ExaminationText(facts, context.program, options.out))
+              << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddExamine(CommandParser& parser) {
+  const auto [command, options] = parser.Add(
+      "examine", "from a controller to an answer: what breaks it, how, and how surely", RunExamine);
+  AddLocalOptions(command, options, /*sizes=*/false);
+  AddValue(command, "--budget", "RUNS", options.budget,
+           "about so many runs in all (default: 8000; of a program of yours 1000)");
+  AddValue(command, "-o,--out", "F", options.out, "the page to write")->required();
+  command.footer(
+      R"(Runs these commands one after the other, each of which is a campaign below DIR that can be looked at, replayed
+and gone on with like any other:
+  random           random cases, and the arena without obstacles, which failures are held against
+  evolve           an archive search: layouts with few obstacles that break the swarm, each in another way
+  confirm          each of them again, in 20 runs with fresh seeds; failures are told apart by this
+  minimise, blame  the toughest case of up to three distinct failures: which obstacles does it take?
+  margin           faulty robots, and noise of each device that the robots have: from where on does it fail?
+and ends with ten lines and a page. After Ctrl-C, or when it was killed, the same command goes on; it gives the
+same answer for any number of workers. --dry-run names the commands and the time, to give them singly, or as the
+job of a cluster: sbatch --cpus-per-task 32 --requeue --wrap 'gauntlet examine ...'.
+
+Examples:
+  gauntlet examine flocking -o report.html
+  gauntlet examine my.toml --budget 2000 -o report.html
+  gauntlet examine foraging --set controller=foraging-improved --dir campaigns/improved -o improved.html)");
+}
+
+}  // namespace gauntlet
