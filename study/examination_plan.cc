@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "controllers/run_start.h"
+#include "search/experiment/failure_cells.h"
 #include "search/failure_tally.h"
 #include "search/margin/margin_stages.h"
 #include "search/search_setup.h"
@@ -12,6 +13,8 @@
 namespace gauntlet {
 namespace {
 
+constexpr std::uint64_t kRunsToShrink = 350;  // what `minimise` and `blame` seldom take more than, of a case
+constexpr std::uint64_t kLeastSearch = 350;   // and random cases: fewer find next to nothing
 // Half of what may be asked for is lost, or half of full scale is added: few swarms withstand that.
 constexpr const char* kDropped = "noise.{}.drop=0..0.5";
 constexpr const char* kAdded = "noise.{}.gaussian=0..0.5";
@@ -43,19 +46,26 @@ Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint6
   if (runs == 0)
     plan.runs =
         StartsProgram(experiment) ? ExaminationPlan::kDefaultProgramRuns : ExaminationPlan::kDefaultRuns;
-  if (plan.runs < ExaminationPlan::kLeastRuns)
+  plan.minimised = plan.runs >= 4000 ? 3 : plan.runs >= 2500 ? 2 : 1;
+  std::uint64_t cells = 1;
+  for (const controllers::DescriptorAxis& axis : CellsOf(experiment))
+    cells *= static_cast<std::uint64_t>(axis.parts);
+  const std::uint64_t for_questions =
+      cells * static_cast<std::uint64_t>(plan.replicates) + plan.minimised * kRunsToShrink;
+  if (plan.runs < for_questions + kLeastSearch)
     return InvalidInput(fmt::format("{} runs are too few for an examination: at least {} are needed",
-                                    plan.runs, ExaminationPlan::kLeastRuns));
-  plan.random_cases = std::min<std::uint64_t>(200, plan.runs / 10);
+                                    plan.runs, for_questions + kLeastSearch));
+  const std::uint64_t rest = plan.runs - for_questions;
+  plan.random_cases = std::min<std::uint64_t>(200, rest / 10);
   plan.vary = DisturbancesOf(experiment);
-  const std::uint64_t for_margins = 3 * plan.runs / 10;
+  const std::uint64_t for_margins = 4 * rest / 10;
   const std::size_t most = for_margins / MarginPlan::kLeastRuns;
   if (plan.vary.size() > most) {
     plan.unvaried.assign(plan.vary.begin() + static_cast<std::ptrdiff_t>(most), plan.vary.end());
     plan.vary.resize(most);
   }
   if (!plan.vary.empty()) plan.margin_runs = std::min<std::uint64_t>(600, for_margins / plan.vary.size());
-  plan.search_runs = plan.runs - plan.random_cases - plan.runs / 5 - plan.margin_runs * plan.vary.size();
+  plan.search_runs = rest - plan.random_cases - plan.margin_runs * plan.vary.size();
   return plan;
 }
 

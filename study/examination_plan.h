@@ -13,22 +13,22 @@ namespace gauntlet {
 struct ExaminationPlan {
   static constexpr std::uint64_t kDefaultRuns = 8000;
   static constexpr std::uint64_t kDefaultProgramRuns =
-      1000;  // of a program of the user's, which takes longer
-  static constexpr std::uint64_t kLeastRuns = 500;
+      2000;  // of a program of the user's, which takes longer
 
   std::uint64_t runs = 0;             // about so many in all
   std::uint64_t random_cases = 0;     // that are simulated once each
   std::uint64_t search_runs = 0;      // of the archive search
   int replicates = 20;                // of each case that it ends with
-  std::size_t minimised = 3;          // cases of different failures that are made smaller
+  std::size_t minimised = 0;          // cases of different failures that are made smaller
   std::vector<std::string> vary;      // for `margin`: a disturbance of each device, and faulty robots
   std::uint64_t margin_runs = 0;      // of each of these
   std::vector<std::string> unvaried;  // for which there are too few runs
 };
 
-// `runs`: 0 = as many as is usual. A tenth of the runs is for random cases (at most 200), three tenths for
-// margins (at most 600 each), two for confirming and making smaller, and what is left for the search. Error:
-// too few runs.
+// `runs`: 0 = as many as is usual. First what confirming takes, should a case be found for every cell of the
+// archive, and making one to three cases smaller. Of the rest a tenth is for random cases (at most 200), four
+// tenths for margins (at most 600 each), and what is left for the search. Error: too few runs, and how many
+// are needed.
 Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint64_t runs);
 
 }  // namespace gauntlet

@@ -258,7 +258,7 @@ void AddExamine(CommandParser& parser) {
       "examine", "from a controller to an answer: what breaks it, how, and how surely", RunExamine);
   AddLocalOptions(command, options, /*sizes=*/false);
   AddValue(command, "--budget", "RUNS", options.budget,
-           "about so many runs in all (default: 8000; of a program of yours 1000)");
+           "about so many runs in all (default: 8000; of a program of yours 2000)");
   AddValue(command, "-o,--out", "F", options.out, "the page to write")->required();
   command.footer(
       R"(Runs these commands one after the other, each of which is a campaign below DIR that can be looked at, replayed

@@ -44,10 +44,10 @@ std::string FailsIn(std::uint64_t failures, std::uint64_t runs) {
   return fmt::format("fails in {} of {} runs", FormatCount(failures), FormatCount(runs));
 }
 
+// Of some that is known of a run.
 std::string InWords(const FailureGrouping& grouping) {
-  if (!grouping.overall) return "not known";
   if (!grouping.Used())
-    return fmt::format("the same case fails in this way and in that; most often: {} ({} of {} failed runs)",
+    return fmt::format("does not repeat within a case; most often {} ({} of {} failed runs)",
                        grouping.overall->value, grouping.overall->runs, grouping.overall->of);
   constexpr std::size_t kMost = 3;
   std::vector<std::string> parts;
@@ -71,7 +71,9 @@ void AddFailures(const CampaignFacts& search, Table& lines) {
                                 Counted(only->archive.failures.size(), "layout"),
                                 FormatCount(search.summary.runs_done), confirmed)});
   const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);
-  for (const FailureGrouping& one : distinct.groupings) lines.AddRow({one.phrase, InWords(one)});
+  for (const FailureGrouping& one : distinct.groupings) {
+    if (one.overall) lines.AddRow({one.phrase, InWords(one)});
+  }
   for (const SmallestLayout* one : SmallestFirst(answers.smallest_layouts, kMostLayouts)) {
     const proto::CaseFailures& verified = one->document.lineage->verified;
     lines.AddRow(

@@ -121,13 +121,15 @@ TEST(SummaryText, EndsWithCommandsOnTheToughestCase) {
 
   const std::size_t hints = text.find("Next commands to try");
   ASSERT_NE(hints, std::string::npos);
-  EXPECT_EQ(text.substr(hints),
-            "Next commands to try\n"
-            "  gauntlet replay 'campaigns/my runs' 813 --svg case-18.svg  # see what happened in the "
-            "toughest case\n"
-            "  gauntlet confirm 'campaigns/my runs' --all-failing         # how many different failures are "
-            "these?\n"
-            "  gauntlet show 'campaigns/my runs' --json                   # everything, for scripts\n");
+  EXPECT_EQ(
+      text.substr(hints),
+      "Next commands to try\n"
+      "  gauntlet replay 'campaigns/my runs' 813 --svg case-18.svg           # see what happened in the "
+      "toughest case\n"
+      "  gauntlet confirm 'campaigns/my runs' --all-failing --replicates 20  # how many different failures "
+      "are "
+      "these?\n"
+      "  gauntlet show 'campaigns/my runs' --json                            # everything, for scripts\n");
 }
 
 TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {

@@ -1,3 +1,4 @@
+// Covers: controllers/common/clusters.cc
 // Covers: controllers/generic/contacts.cc
 #include "controllers/generic/measures.h"
 
