@@ -28,7 +28,8 @@ Section TellGrouping(const FailureGrouping& grouping, int told, std::size_t most
     return {.title = fmt::format("{} is not known of these failures", grouping.title),
             .sentences = {grouping.unknown}};
   const std::string agreement = fmt::format(
-      "{:.2f} (kappa: 0 = no more often than runs of different cases, 1 = always)", *grouping.agreement);
+      "{:.2f} (kappa: 0 = no more often than runs of different cases, 1 = always)",
+      std::max(0.0, *grouping.agreement));
   if (!grouping.Used())
     return {.title = fmt::format("{} does not tell these failures apart", grouping.title),
             .sentences = {fmt::format("Failed runs of one case agree in it by {}, which takes {} at least.",

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> Examine(const std::string& dir, const std::string& workers) {
   return {"examine",     "flocking",  "--budget",
-          "800",         "--set",     kSanitized ? "scenario_parameters.time_limit=5" : "seed=3",
+          "1400",        "--set",     kSanitized ? "scenario_parameters.time_limit=5" : "seed=3",
           "--dir",       dir,         "--out",
           dir + ".html", "--workers", workers,
           "--quiet",     "--json"};
