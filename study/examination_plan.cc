@@ -13,8 +13,11 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::uint64_t kRunsToShrink = 350;  // what `minimise` and `blame` seldom take more than, of a case
-constexpr std::uint64_t kLeastSearch = 350;   // and random cases: fewer find next to nothing
+// What `minimise` and `blame` seldom take more than, of a case of an archive, which has few obstacles, and of
+// another.
+constexpr std::uint64_t kRunsToShrink = 350;
+constexpr std::uint64_t kRunsToShrinkMany = 1400;
+constexpr std::uint64_t kLeastSearch = 350;  // and random cases: fewer find next to nothing
 // Half of what may be asked for is lost, or half of full scale is added: few swarms withstand that.
 constexpr const char* kDropped = "noise.{}.drop=0..0.5";
 constexpr const char* kAdded = "noise.{}.gaussian=0..0.5";
@@ -38,6 +41,15 @@ std::vector<std::string> DisturbancesOf(const Experiment& experiment) {
   return vary;
 }
 
+// That the search can end with.
+std::uint64_t MostCasesOf(const Experiment& experiment) {
+  const auto axes = CellsOf(experiment);
+  if (axes.empty()) return static_cast<std::uint64_t>(experiment.search.population);
+  std::uint64_t cells = 1;
+  for (const controllers::DescriptorAxis& axis : axes) cells *= static_cast<std::uint64_t>(axis.parts);
+  return cells;
+}
+
 }  // namespace
 
 Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint64_t runs) {
@@ -47,11 +59,9 @@ Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint6
     plan.runs =
         StartsProgram(experiment) ? ExaminationPlan::kDefaultProgramRuns : ExaminationPlan::kDefaultRuns;
   plan.minimised = plan.runs >= 4000 ? 3 : plan.runs >= 2500 ? 2 : 1;
-  std::uint64_t cells = 1;
-  for (const controllers::DescriptorAxis& axis : CellsOf(experiment))
-    cells *= static_cast<std::uint64_t>(axis.parts);
-  const std::uint64_t for_questions =
-      cells * static_cast<std::uint64_t>(plan.replicates) + plan.minimised * kRunsToShrink;
+  const bool in_cells = !CellsOf(experiment).empty();
+  const std::uint64_t for_questions = MostCasesOf(experiment) * static_cast<std::uint64_t>(plan.replicates) +
+                                      plan.minimised * (in_cells ? kRunsToShrink : kRunsToShrinkMany);
   if (plan.runs < for_questions + kLeastSearch)
     return InvalidInput(fmt::format("{} runs are too few for an examination: at least {} are needed",
                                     plan.runs, for_questions + kLeastSearch));
@@ -66,6 +76,14 @@ Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint6
   }
   if (!plan.vary.empty()) plan.margin_runs = std::min<std::uint64_t>(600, for_margins / plan.vary.size());
   plan.search_runs = rest - plan.random_cases - plan.margin_runs * plan.vary.size();
+  plan.search_length = fmt::format("search.runs={}", plan.search_runs);
+  if (!in_cells) {
+    plan.algorithm = "genetic";
+    const auto each = static_cast<std::uint64_t>(experiment.search.population) *
+                      static_cast<std::uint64_t>(experiment.search.replicates);
+    plan.search_length =
+        fmt::format("search.generations={}", std::max<std::uint64_t>(2, plan.search_runs / each));
+  }
   return plan;
 }
 

@@ -51,7 +51,7 @@ class Examination {
     std::vector<Command> commands = {
         New("random", "/random", {"--cases", fmt::format("{}", plan_.random_cases)}),
         New("evolve", "/search",
-            {"--set", "search.algorithm=archive", "--set", fmt::format("search.runs={}", plan_.search_runs)}),
+            {"--set", "search.algorithm=" + plan_.algorithm, "--set", plan_.search_length}),
         {"baseline", directory_ + "/search"},
         {"confirm", directory_ + "/search", "--elites", "--replicates", fmt::format("{}", plan_.replicates)}};
     return commands;
@@ -130,7 +130,8 @@ class Examination {
   bool FoundSomething() const {
     const Result<CampaignFacts> facts = ReadFacts(directory_ + "/search");
     const SearchSummary* only = facts ? facts->summary.OnlySearch() : nullptr;
-    return only == nullptr || !only->archive.failures.empty();
+    return only == nullptr ||
+           (only->archive.axes.empty() ? only->failing_runs > 0 : !only->archive.failures.empty());
   }
 
   // The toughest case of each distinct failure, those by mechanism first.
@@ -225,9 +226,10 @@ Status WritePage(const ExaminationFacts& facts, const std::string& directory, Ou
 
 Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& options) {
   TRY(const std::uint64_t budget, BudgetOf(options.budget));
+  TRY(const Experiment as_given, LoadExperimentWith(options.experiment, {}));
+  TRY(const ExaminationPlan plan, PlanExamination(as_given, budget));
   TRY(const Experiment experiment,
-      LoadExperimentWith(options.experiment, {{"examine", "search.algorithm", "archive"}}));
-  TRY(const ExaminationPlan plan, PlanExamination(experiment, budget));
+      LoadExperimentWith(options.experiment, {{"examine", "search.algorithm", plan.algorithm}}));
   const std::string directory = options.experiment.directory.empty()
                                     ? fmt::format("campaigns/{}-examined", experiment.name)
                                     : options.experiment.directory;
@@ -265,9 +267,11 @@ void AddExamine(CommandParser& parser) {
 and gone on with like any other:
   random           random cases, and the arena without obstacles, which failures are held against
   evolve           an archive search: layouts with few obstacles that break the swarm, each in another way
+                   (a genetic search where the scenario does not say along which metrics failures differ)
   confirm          each of them again, in 20 runs with fresh seeds; failures are told apart by this
   minimise, blame  the toughest case of up to three distinct failures: which obstacles does it take?
-  margin           faulty robots, and noise of each device that the robots have: from where on does it fail?
+  margin           faulty robots, and noise of each device that the robots are known to have: from where on does
+                   it fail?
 and ends with ten lines and a page. After Ctrl-C, or when it was killed, the same command goes on; it gives the
 same answer for any number of workers. --dry-run names the commands and the time, to give them singly, or as the
 job of a cluster: sbatch --cpus-per-task 32 --requeue --wrap 'gauntlet examine ...'.

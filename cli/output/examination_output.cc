@@ -63,13 +63,13 @@ std::string InWords(const FailureGrouping& grouping) {
 // What stands for a search that has found something.
 void AddFailures(const CampaignFacts& search, Table& lines) {
   const CampaignAnswers& answers = search.answers;
-  const SearchSummary* only = search.summary.OnlySearch();
   const auto confirmed =
       std::ranges::count(answers.confirmations, FailureVerdict::kFail, &Confirmation::verdict);
   lines.AddRow(
-      {"obstacles", fmt::format("{} in {} runs of a search break it; {} in at least half of fresh runs",
-                                Counted(only->archive.failures.size(), "layout"),
-                                FormatCount(search.summary.runs_done), confirmed)});
+      {"obstacles", fmt::format("a search of {} runs ends with {}, of which {} break it in at least half of "
+                                "fresh runs",
+                                FormatCount(search.summary.runs_done),
+                                Counted(answers.confirmations.size(), "layout"), confirmed)});
   const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);
   for (const FailureGrouping& one : distinct.groupings) {
     if (one.overall) lines.AddRow({one.phrase, InWords(one)});
@@ -125,8 +125,7 @@ std::string ExaminationText(const ExaminationFacts& facts, const std::string& pr
                                           static_cast<std::uint64_t>(tally.runs()))});
   }
   lines.AddRow({"random cases", FailsIn(facts.random.summary.failing_runs, facts.random.summary.runs_done)});
-  const SearchSummary* only = search.summary.OnlySearch();
-  if (only->archive.failures.empty()) {
+  if (search.answers.confirmations.empty()) {
     lines.AddRow({"obstacles", fmt::format("a search of {} runs found no layout that breaks it reliably",
                                            FormatCount(search.summary.runs_done))});
   } else {

@@ -25,7 +25,16 @@ TEST(ExaminationPlanTest, SpendsItsRunsOnSearchMarginsAndQuestions) {
   EXPECT_EQ(plan.minimised, 3U);
   EXPECT_EQ(plan.margin_runs, 600U);
   EXPECT_EQ(plan.search_runs, 8000U - 25U * 20U - 3U * 350U - 200U - 4U * 600U);
+  EXPECT_EQ(plan.search_length, "search.runs=3850");
   EXPECT_TRUE(plan.unvaried.empty());
+}
+
+TEST(ExaminationPlanTest, WithoutAxesOfFailuresTheSearchIsGenetic) {
+  Experiment experiment = LoadExperiment("flocking", {}, BuiltInCatalogue()).value();
+  experiment.scenario = "light-flocking";
+  const ExaminationPlan plan = PlanExamination(experiment, 0).value();
+  EXPECT_EQ(plan.algorithm, "genetic");
+  EXPECT_EQ(plan.search_length.substr(0, 19), "search.generations=");
 }
 
 TEST(ExaminationPlanTest, OfFewRunsLooksAtFewerDisturbances) {
