@@ -1,5 +1,7 @@
 // gauntlet examine: from a controller to an answer, by the other commands.
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -134,17 +136,22 @@ class Examination {
            (only->archive.axes.empty() ? only->failing_runs > 0 : !only->archive.failures.empty());
   }
 
-  // The toughest case of each distinct failure, those by mechanism first.
+  // The toughest case of each distinct failure, those by mechanism first; then the toughest others.
   Result<std::vector<RunId>> ToughestRuns() const {
     TRY(const auto confirmations, ReadConfirmations(directory_ + "/search"));
     const DistinctFailures distinct = DistinctFailuresOf(confirmations, {});
+    std::vector<const Confirmation*> wanted;
+    for (const DistinctFailure* failure : distinct.All()) wanted.push_back(failure->cases.front());
+    const std::size_t groups = wanted.size();
+    for (const Confirmation& one : confirmations) wanted.push_back(&one);
+    std::ranges::stable_sort(wanted.begin() + static_cast<std::ptrdiff_t>(groups), wanted.end(),
+                             std::greater(), [](const Confirmation* one) { return Toughness(*one); });
     std::vector<RunId> runs;
-    const auto add = [&](const Confirmation& one) {
-      if (one.run == 0 || one.verdict != FailureVerdict::kFail || runs.size() == plan_.minimised) return;
-      if (std::ranges::count(runs, one.run) == 0) runs.push_back(one.run);
-    };
-    for (const DistinctFailure* failure : distinct.All()) add(*failure->cases.front());
-    if (const Confirmation* toughest = ToughestOf(confirmations)) add(*toughest);
+    for (const Confirmation* one : wanted) {
+      if (one->verdict == FailureVerdict::kFail && runs.size() < plan_.minimised &&
+          std::ranges::count(runs, one->run) == 0)
+        runs.push_back(one->run);
+    }
     return runs;
   }
 
