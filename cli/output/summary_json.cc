@@ -116,6 +116,11 @@ std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& a
     json["reproducible"] = seen.Name();
     json["reproducible_hosts"] = seen.Hosts();
   }
+  json["empty_arena"] = nullptr;
+  if (!answers.baselines.empty()) {
+    const FailureTally& tally = answers.baselines.front().tally;
+    json["empty_arena"] = {{"k", tally.failures}, {"n", tally.runs()}};
+  }
   json["baseline"] = answers.baselines.empty() ? Json() : BaselinesTable(answers.baselines).ToJson();
   json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
   const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);

@@ -258,7 +258,7 @@ std::vector<ComparedMetric> MetricsOf(const std::vector<Pair>& pairs) {
 }
 
 Table MetricsTable(const std::vector<ComparedMetric>& metrics) {
-  Table table({{"metric", "metric"},
+  Table table({{"metric", "name"},
                ForPrograms("unit"),
                {">cases", "cases"},
                {">mean of A", "mean_a"},
@@ -353,31 +353,54 @@ Result<Findings> FindingsIn(const Asking& asking, const Call& call, std::span<co
   return found;
 }
 
+// Both by what tells them apart: their experiments, else their controllers, else as everywhere here.
+std::array<std::string, 2> NamesOf(const Findings& found) {
+  const Experiment& a = *found.pairs.front().sides[0]->experiment;
+  const Experiment& b = *found.pairs.front().sides[1]->experiment;
+  if (a.name != b.name) return {a.name, b.name};
+  if (a.controller != b.controller) return {a.controller, b.controller};
+  return {kSides[0], kSides[1]};
+}
+
 std::string ComparisonJson(const Call& call, const Findings& found) {
   const PairedComparison& f = found.failures;
+  const auto names = NamesOf(found);
   Json sides = Json::array();
+  std::array<FailureTally, 2> tallies;
   for (std::size_t side = 0; side < 2; ++side) {
+    for (const Pair& pair : found.pairs) {
+      tallies[side].failures += pair.sides[side]->tally().failures;
+      tallies[side].passes += pair.sides[side]->tally().passes;
+    }
     const Experiment& experiment = *found.pairs.front().sides[side]->experiment;
-    sides.push_back({{"name", kSides[side]},
-                     {"experiment", experiment.name},
-                     {"controller", experiment.controller},
-                     {"failure_rate", f.means[side]},
-                     {"failure_rate_interval", JsonValue(IntervalCell(f.intervals[side]).value)}});
+    sides.push_back(
+        {{"name", names[side]}, {"experiment", experiment.name}, {"controller", experiment.controller}});
   }
+  const auto rate = [&](std::size_t side) {
+    return Json{{"k", tallies[side].failures},
+                {"n", tallies[side].runs()},
+                {"rate", f.means[side]},
+                {"interval", JsonValue(IntervalCell(f.intervals[side]).value)}};
+  };
   const std::string better = BetterOf(f);
   return JsonText({{"directory", call.directory},
+                   {"a", names[0]},
+                   {"b", names[1]},
                    {"controllers", std::move(sides)},
                    {"cases", f.cases},
                    {"left_out", found.left_out},
                    {"unit", f.relatives ? "evolution" : "case"},
                    {"units", f.units},
-                   {"better", better.empty() ? Json() : Json(better)},
-                   {"difference", f.difference},
-                   {"interval", JsonValue(IntervalCell(f.interval).value)},
-                   {"p", f.p ? Json(*f.p) : Json()},
-                   {"method", f.method},
-                   {"mended", ChangedTable(found.mended).ToJson()},
-                   {"broken", ChangedTable(found.broken).ToJson()},
+                   {"better", better.empty() ? Json() : Json(names[better == kSides[0] ? 0 : 1])},
+                   {"failure",
+                    {{"a", rate(0)},
+                     {"b", rate(1)},
+                     {"difference", f.difference},
+                     {"interval", JsonValue(IntervalCell(f.interval).value)},
+                     {"mended", ChangedTable(found.mended).ToJson()},
+                     {"broken", ChangedTable(found.broken).ToJson()},
+                     {"p", f.p ? Json(*f.p) : Json()},
+                     {"method", f.method}}},
                    {"metrics", MetricsTable(found.metrics).ToJson()},
                    {"verdict", Verdict(f)}});
 }
