@@ -221,14 +221,13 @@ Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& option
   return kExitDone;
 }
 
-Status WritePage(const ExaminationFacts& facts, const std::string& directory, OutputFile& file) {
+Status WritePage(const ExaminationFacts& facts, const std::string& directory, const std::string& path) {
   TRY(Report report, GatherReport({facts.search.directory}, kExaminedRuns));
   if (!facts.margins.empty()) {
     TRY(CampaignPages margins, GatherPages(directory + "/margins", 0));
     report.campaigns.push_back(std::move(margins));
   }
-  TRY(file.Write(ReportPage(report)));
-  return file.Close();
+  return WriteOutputFile(path, ReportPage(report));
 }
 
 Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& options) {
@@ -242,7 +241,9 @@ Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& optio
                                     : options.experiment.directory;
   Examination examination(context, options, directory, plan);
   if (options.dry_run) return PrintPlan(context, options, experiment, plan, examination);
-  TRY(OutputFile page, OutputFile::Open(options.out));
+  // Looked at first, as the runs would be for nothing; not held open, as a kill would leave a draft beside
+  // it.
+  TRY(OutputFile::Open(options.out));
   TRY(Claim(directory, WriteExperiment(experiment, {fmt::format("{} runs", plan.runs)}, BuiltInCatalogue())));
   if (!plan.unvaried.empty() && !options.running.quiet)
     PrintMessage(context, fmt::format("too few runs to look at {}: a larger --budget does",
@@ -253,7 +254,7 @@ Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& optio
     return code;
   }
   TRY(const ExaminationFacts facts, ReadExamination(directory));
-  TRY(WritePage(facts, directory, page));
+  TRY(WritePage(facts, directory, options.out));
   context.out << (options.running.json ? ExaminationJson(facts, directory, options.out)
                                        : ExaminationText(facts, context.program, options.out))
               << std::flush;

@@ -27,9 +27,9 @@ Section TellGrouping(const FailureGrouping& grouping, int told, std::size_t most
   if (!grouping.agreement)
     return {.title = fmt::format("{} is not known of these failures", grouping.title),
             .sentences = {grouping.unknown}};
-  const std::string agreement = fmt::format(
-      "{:.2f} (kappa: 0 = no more often than runs of different cases, 1 = always)",
-      std::max(0.0, *grouping.agreement));
+  const std::string agreement =
+      fmt::format("{:.2f} (kappa: 0 = no more often than runs of different cases, 1 = always)",
+                  std::max(0.0, *grouping.agreement));
   if (!grouping.Used())
     return {.title = fmt::format("{} does not tell these failures apart", grouping.title),
             .sentences = {fmt::format("Failed runs of one case agree in it by {}, which takes {} at least.",
@@ -60,8 +60,8 @@ Section TellTooFew(const CampaignAnswers& answers, const DistinctFailures& disti
                            Counted(static_cast<std::uint64_t>(distinct.failing), "failing case") +
                                (distinct.failing == 1 ? " has" : " have"),
                            distinct.too_few == 1 ? "it" : "each"),
-      .sentences = {fmt::format("It takes {}: the same `gauntlet confirm` with --replicates 20 "
-                                "simulates more of them.",
+      .sentences = {fmt::format("It takes {}. `gauntlet confirm` with --replicates 20, or with more "
+                                "where they seldom fail, simulates more of them.",
                                 kRunsForGroup)}};
   if (distinct.too_few < distinct.failing) return section;
   std::vector<Confirmation> toughest = answers.confirmations;
