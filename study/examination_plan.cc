@@ -58,10 +58,12 @@ Result<ExaminationPlan> PlanExamination(const Experiment& experiment, std::uint6
   if (runs == 0)
     plan.runs =
         StartsProgram(experiment) ? ExaminationPlan::kDefaultProgramRuns : ExaminationPlan::kDefaultRuns;
-  plan.minimised = plan.runs >= 4000 ? 3 : plan.runs >= 2500 ? 2 : 1;
   const bool in_cells = !CellsOf(experiment).empty();
-  const std::uint64_t for_questions = MostCasesOf(experiment) * static_cast<std::uint64_t>(plan.replicates) +
-                                      plan.minimised * (in_cells ? kRunsToShrink : kRunsToShrinkMany);
+  const std::uint64_t for_cases = MostCasesOf(experiment) * static_cast<std::uint64_t>(plan.replicates);
+  const std::uint64_t to_shrink = in_cells ? kRunsToShrink : kRunsToShrinkMany;
+  for (plan.minimised = 3; plan.minimised > 1 && 2 * (for_cases + plan.minimised * to_shrink) > plan.runs;)
+    --plan.minimised;
+  const std::uint64_t for_questions = for_cases + plan.minimised * to_shrink;
   if (plan.runs < for_questions + kLeastSearch)
     return InvalidInput(fmt::format("{} runs are too few for an examination: at least {} are needed",
                                     plan.runs, for_questions + kLeastSearch));

@@ -31,7 +31,8 @@ std::string ToText(const Section& section) {
   if (!section.table.empty()) text += section.table.ToText();
   text += SentencesText(section.sentences);
   Table commands({"", ""});
-  for (const NextCommand& one : section.commands) commands.AddRow({one.command, one.purpose.empty() ? "" : "# " + one.purpose});
+  for (const NextCommand& one : section.commands)
+    commands.AddRow({one.command, one.purpose.empty() ? "" : "# " + one.purpose});
   return text + commands.ToText();
 }
 

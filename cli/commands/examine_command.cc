@@ -17,6 +17,7 @@
 #include "base/system/regular_file.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
+#include "cli/options/stop_signal.h"
 #include "cli/output/examination_output.h"
 #include "cli/output/output_file.h"
 #include "master/campaign/forecast.h"
@@ -27,6 +28,7 @@
 #include "search/search_table.h"
 #include "study/examination_plan.h"
 #include "study/questions/distinct_failures.h"
+#include "study/questions/empty_arena.h"
 
 namespace gauntlet {
 namespace {
@@ -44,14 +46,19 @@ struct ExamineOptions : LocalOptions {
 // The same commands as somebody would type, one after the other. What is there already is gone on with.
 class Examination {
  public:
-  Examination(CommandContext& context, const ExamineOptions& options, std::string directory,
-              ExaminationPlan plan)
-      : context_(context), options_(options), directory_(std::move(directory)), plan_(std::move(plan)) {}
+  Examination(CommandContext& context, const ExamineOptions& options, const Experiment& experiment,
+              std::string directory, ExaminationPlan plan)
+      : context_(context),
+        options_(options),
+        experiment_(experiment),
+        directory_(std::move(directory)),
+        plan_(std::move(plan)) {}
 
   // The first ones; which follow depends on what these find.
   std::vector<Command> Searches() const {
     std::vector<Command> commands = {
         New("random", "/random", {"--cases", fmt::format("{}", plan_.random_cases)}),
+        {"baseline", directory_ + "/random"},
         New("evolve", "/search",
             {"--set", "search.algorithm=" + plan_.algorithm, "--set", plan_.search_length}),
         {"baseline", directory_ + "/search"},
@@ -68,6 +75,7 @@ class Examination {
   // Exit 0 when the whole examination is there.
   Result<ExitCode> Run() {
     for (const Command& command : Searches()) {
+      if (command.front() == "evolve" && FailsAnyway()) return kExitDone;
       if (command.front() == "confirm" && !FoundSomething()) continue;
       TRY(const ExitCode code, Step(command));
       if (code != kExitDone) return code;
@@ -108,6 +116,9 @@ class Examination {
     const auto dir = std::ranges::find(whole, "--dir");
     if (dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1))) whole = {"resume", *(dir + 1)};
     if (!options_.running.workers.empty()) whole.insert(whole.end(), {"--workers", options_.running.workers});
+    if (!options_.running.audit.empty()) whole.insert(whole.end(), {"--audit", options_.running.audit});
+    if (!options_.running.metrics_port.empty())
+      whole.insert(whole.end(), {"--metrics-port", options_.running.metrics_port});
     if (options_.running.quiet) whole.push_back("--quiet");
     if (options_.running.no_progress) whole.push_back("--no-progress");
     if (!options_.running.quiet)
@@ -120,13 +131,21 @@ class Examination {
                          .program = context_.program,
                          .campaigns = context_.campaigns,
                          .slurm = context_.slurm};
-    return RunCommandLine(whole, inner);
+    const ExitCode code = RunCommandLine(whole, inner);
+    // The look at the empty arena stops nothing but itself.
+    return code == kExitDone && StopSignal::Requested() ? kExitStopped : code;
   }
 
   static Command Quoted(const Command& command) {
     Command quoted;
     for (const std::string& one : command) quoted.push_back(ShellQuoted(one));
     return quoted;
+  }
+
+  // Then no layout is to blame, and there is nothing to search for: the first runs say so as `evolve` would.
+  bool FailsAnyway() const {
+    const auto tally = FirstEmptyRuns(experiment_, /*all=*/false);
+    return tally && !CheckEmptyArena(experiment_, *tally);
   }
 
   bool FoundSomething() const {
@@ -138,7 +157,7 @@ class Examination {
 
   // The toughest case of each distinct failure, those by mechanism first; then the toughest others.
   Result<std::vector<RunId>> ToughestRuns() const {
-    TRY(const auto confirmations, ReadConfirmations(directory_ + "/search"));
+    TRY(const auto confirmations, ExaminedCases(directory_ + "/search"));
     const DistinctFailures distinct = DistinctFailuresOf(confirmations, {});
     std::vector<const Confirmation*> wanted;
     for (const DistinctFailure* failure : distinct.All()) wanted.push_back(failure->cases.front());
@@ -157,6 +176,7 @@ class Examination {
 
   CommandContext& context_;
   const ExamineOptions& options_;
+  const Experiment& experiment_;
   const std::string directory_;
   const ExaminationPlan plan_;
   int steps_ = 0;
@@ -166,7 +186,23 @@ Result<std::uint64_t> BudgetOf(const std::string& text) {
   if (text.empty()) return std::uint64_t{0};
   const auto runs = ParseNumber<std::uint64_t>(text);
   if (runs && *runs > 0) return *runs;
-  return InvalidInput(fmt::format("--budget {}: give a whole number of runs", Printable(text)));
+  return InvalidInput(fmt::format("--budget {}: give a number of runs, such as {}", Printable(text),
+                                  ExaminationPlan::kDefaultRuns));
+}
+
+// It chooses its searches itself, and the same command must mean the same.
+Status CheckOptions(const ExamineOptions& options) {
+  for (const std::string& set : options.experiment.sets) {
+    if (set.starts_with("search.") && !set.starts_with("search.cells"))
+      return InvalidInput(
+          fmt::format("--set {}: examine chooses its searches itself; --budget says how long they "
+                      "are",
+                      set));
+  }
+  if (options.experiment.seed == "random")
+    return InvalidInput("--seed random: the same command could not go on; give a number");
+  if (options.out.empty() && !options.dry_run) return InvalidInput("where to? -o FILE.html names the page");
+  return Ok{};
 }
 
 // An examination of something else does not go on where this one is kept.
@@ -177,8 +213,8 @@ Status Claim(const std::string& directory, const std::string& what) {
     TRY(const std::string there, ReadRegularFile(path));
     if (there == what) return Ok{};
     return InvalidInput(
-        fmt::format("{} holds an examination of another experiment or budget: another --dir keeps "
-                    "this one",
+        fmt::format("{0} holds an examination with another experiment, seed or budget, as "
+                    "{0}/examination.toml says: give another --dir",
                     directory));
   }
   if (fs::exists(directory, error) && !fs::is_empty(directory, error))
@@ -209,9 +245,10 @@ Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& option
     return kExitDone;
   }
   Section section{.title = fmt::format("{}: a dry run, nothing was made", experiment.name)};
-  section.lead = {fmt::format("About {} runs, {} with {} ({} of the first runs took {:.3g} ms each here).",
-                              FormatCount(plan.runs), FormatDuration(seconds), Counted(workers, "worker"),
-                              forecast.measured_runs, 1e3 * forecast.seconds_per_run)};
+  section.lead = {
+      fmt::format("At most about {} runs, {} with {} ({} of the first runs took {:.3g} ms each here).",
+                  FormatCount(plan.runs), FormatDuration(seconds), Counted(workers, "worker"),
+                  forecast.measured_runs, 1e3 * forecast.seconds_per_run)};
   for (const Command& one : commands) {
     std::string line = context.program;
     for (const std::string& word : one) line += " " + ShellQuoted(word);
@@ -223,15 +260,18 @@ Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& option
 
 Status WritePage(const ExaminationFacts& facts, const std::string& directory, const std::string& path) {
   TRY(Report report, GatherReport({facts.search.directory}, kExaminedRuns));
-  if (!facts.margins.empty()) {
-    TRY(CampaignPages margins, GatherPages(directory + "/margins", 0));
-    report.campaigns.push_back(std::move(margins));
+  for (const char* folder : {"/margins", "/random"}) {
+    const std::string campaign = directory + folder;
+    if (!CampaignDirectory::IsCampaign(campaign) || campaign == facts.search.directory) continue;
+    TRY(CampaignPages pages, GatherPages(campaign, 0));
+    report.campaigns.push_back(std::move(pages));
   }
   return WriteOutputFile(path, ReportPage(report));
 }
 
 Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& options) {
   TRY(const std::uint64_t budget, BudgetOf(options.budget));
+  TRY(CheckOptions(options));
   TRY(const Experiment as_given, LoadExperimentWith(options.experiment, {}));
   TRY(const ExaminationPlan plan, PlanExamination(as_given, budget));
   TRY(const Experiment experiment,
@@ -239,15 +279,12 @@ Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& optio
   const std::string directory = options.experiment.directory.empty()
                                     ? fmt::format("campaigns/{}-examined", experiment.name)
                                     : options.experiment.directory;
-  Examination examination(context, options, directory, plan);
+  Examination examination(context, options, experiment, directory, plan);
   if (options.dry_run) return PrintPlan(context, options, experiment, plan, examination);
+  TRY(Claim(directory, WriteExperiment(experiment, {fmt::format("{} runs", plan.runs)}, BuiltInCatalogue())));
   // Looked at first, as the runs would be for nothing; not held open, as a kill would leave a draft beside
   // it.
   TRY(OutputFile::Open(options.out));
-  TRY(Claim(directory, WriteExperiment(experiment, {fmt::format("{} runs", plan.runs)}, BuiltInCatalogue())));
-  if (!plan.unvaried.empty() && !options.running.quiet)
-    PrintMessage(context, fmt::format("too few runs to look at {}: a larger --budget does",
-                                      fmt::join(plan.unvaried, ", ")));
   TRY(const ExitCode code, examination.Run());
   if (code != kExitDone) {
     if (code == kExitStopped) PrintMessage(context, "go on with the whole examination: the same command");
@@ -256,7 +293,7 @@ Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& optio
   TRY(const ExaminationFacts facts, ReadExamination(directory));
   TRY(WritePage(facts, directory, options.out));
   context.out << (options.running.json ? ExaminationJson(facts, directory, options.out)
-                                       : ExaminationText(facts, context.program, options.out))
+                                       : ExaminationText(facts, plan, context.program, options.out))
               << std::flush;
   return kExitDone;
 }
@@ -268,8 +305,8 @@ void AddExamine(CommandParser& parser) {
       "examine", "from a controller to an answer: what breaks it, how, and how surely", RunExamine);
   AddLocalOptions(command, options, /*sizes=*/false);
   AddValue(command, "--budget", "RUNS", options.budget,
-           "about so many runs in all (default: 8000; of a program of yours 2000)");
-  AddValue(command, "-o,--out", "F", options.out, "the page to write")->required();
+           "about so many runs in all (default: 8000; of a program of yours 3000)");
+  AddValue(command, "-o,--out", "F", options.out, "the page to write");
   command.footer(
       R"(Runs these commands one after the other, each of which is a campaign below DIR that can be looked at, replayed
 and gone on with like any other:
@@ -280,8 +317,9 @@ and gone on with like any other:
   minimise, blame  the toughest case of up to three distinct failures: which obstacles does it take?
   margin           faulty robots, and noise of each device that the robots are known to have: from where on does
                    it fail?
-and ends with ten lines and a page. After Ctrl-C, or when it was killed, the same command goes on; it gives the
-same answer for any number of workers. --dry-run names the commands and the time, to give them singly, or as the
+and ends with ten lines and a page. A swarm that fails without any obstacle gets no more than the first step. DIR
+(default: campaigns/NAME-examined) may hold what an earlier such command has left. After Ctrl-C, or when it was killed, the same command goes on; it gives the
+same answer for any number of workers. --dry-run names the commands that are known before and the time, to give them singly, or as the
 job of a cluster: sbatch --cpus-per-task 32 --requeue --wrap 'gauntlet examine ...'.
 
 Examples:

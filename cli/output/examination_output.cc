@@ -1,6 +1,7 @@
 #include "cli/output/examination_output.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -50,13 +51,17 @@ std::string InWords(const FailureGrouping& grouping) {
     return fmt::format("does not repeat within a case; most often {} ({} of {} failed runs)",
                        grouping.overall->value, grouping.overall->runs, grouping.overall->of);
   constexpr std::size_t kMost = 3;
+  std::vector<const DistinctFailure*> groups;
+  for (const DistinctFailure& one : grouping.groups) groups.push_back(&one);
+  std::ranges::stable_sort(groups, std::greater(), [](const DistinctFailure* one) { return one->share; });
   std::vector<std::string> parts;
-  for (const DistinctFailure& one : grouping.groups) {
-    if (parts.size() < kMost) parts.push_back(fmt::format("{} ({:.0f} %)", one.name, 100.0 * one.share));
+  for (const DistinctFailure* one : groups) {
+    if (parts.size() < kMost)
+      parts.push_back(fmt::format("{} ({})", one->name, Counted(one->cases.size(), "case")));
   }
-  if (grouping.groups.size() > kMost) parts.push_back(fmt::format("{} more", grouping.groups.size() - kMost));
+  if (groups.size() > kMost) parts.push_back(fmt::format("{} more", groups.size() - kMost));
   if (grouping.mixed > 0)
-    parts.push_back(fmt::format("{} mixed", Counted(static_cast<std::uint64_t>(grouping.mixed), "case")));
+    parts.push_back(fmt::format("mixed ({})", Counted(static_cast<std::uint64_t>(grouping.mixed), "case")));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -84,28 +89,54 @@ void AddFailures(const CampaignFacts& search, Table& lines) {
   }
 }
 
-// What it withstands least, and the others by name.
-void AddMargins(const std::vector<Margin>& margins, Table& lines) {
-  std::vector<std::string> others;
+// In random cases: what it withstands least, and the others by name.
+void AddMargins(const std::vector<Margin>& margins, const ExaminationPlan& plan, Table& lines) {
+  std::vector<std::string> withstood, unknown;
   for (const Margin& one : margins) {
-    if (one.rank == 1) {
+    const std::string& key = one.plan.key.key.path;
+    const std::string range = fmt::format("{} up to {}", key, one.plan.key.high);
+    const std::string crosses = CrossesOf(one);
+    if (crosses == "below_everywhere") {
+      withstood.push_back(range);
+    } else if (crosses == "undecided") {
+      unknown.push_back(range);
+    } else if (one.rank == 1) {
       lines.AddRow({"disturbed", OutcomeOf(one)});
     } else {
-      others.push_back(one.plan.key.key.path);
+      withstood.push_back(fmt::format("more of {}", key));
     }
   }
-  if (!others.empty()) lines.AddRow({"", fmt::format("It withstands more of {}.", fmt::join(others, ", "))});
+  for (const std::string& key : plan.unvaried) unknown.push_back(key.substr(0, key.find('=')));
+  if (!withstood.empty())
+    lines.AddRow({"withstands",
+                  fmt::format("{}: fewer than half of the random cases fail", fmt::join(withstood, ", "))});
+  if (!unknown.empty())
+    lines.AddRow({"not known", fmt::format("{}: the runs are too few", fmt::join(unknown, ", "))});
 }
 
 }  // namespace
 
+Result<std::vector<Confirmation>> ExaminedCases(const std::string& campaign) {
+  TRY(auto confirmations, ReadConfirmations(campaign));
+  if (confirmations.empty()) return confirmations;
+  TRY(const QuestionedCampaign ended_with, PopulationCases(campaign));
+  std::erase_if(confirmations, [&](const Confirmation& one) {
+    return std::ranges::none_of(ended_with.cases, [&](const auto& known) { return known.name == one.name; });
+  });
+  return confirmations;
+}
+
 Result<ExaminationFacts> ReadExamination(const std::string& directory) {
   ExaminationFacts facts;
   TRY(facts.random, ReadFacts(directory + "/random"));
-  TRY(facts.search, ReadFacts(directory + "/search"));
+  facts.search = facts.random;
   TRY(facts.runs, RunsOf(directory + "/random"));
-  TRY(const std::uint64_t of_search, RunsOf(directory + "/search"));
-  facts.runs += of_search;
+  if (const std::string search = directory + "/search"; CampaignDirectory::IsCampaign(search)) {
+    TRY(facts.search, ReadFacts(search));
+    TRY(facts.search.answers.confirmations, ExaminedCases(search));
+    TRY(const std::uint64_t of_search, RunsOf(search));
+    facts.runs += of_search;
+  }
   const std::string margins = directory + "/margins";
   if (!CampaignDirectory::IsCampaign(margins)) return facts;
   TRY(facts.margins, ReadMargins(margins));
@@ -114,33 +145,36 @@ Result<ExaminationFacts> ReadExamination(const std::string& directory) {
   return facts;
 }
 
-std::string ExaminationText(const ExaminationFacts& facts, const std::string& program,
-                            const std::string& page) {
+std::string ExaminationText(const ExaminationFacts& facts, const ExaminationPlan& plan,
+                            const std::string& program, const std::string& page) {
   const CampaignFacts& search = facts.search;
   const Experiment& experiment = search.plans.front().experiment;
   Table lines({"", ""});
-  if (!facts.search.answers.baselines.empty()) {
-    const FailureTally& tally = facts.search.answers.baselines.front().tally;
+  if (!facts.random.answers.baselines.empty()) {
+    const FailureTally& tally = facts.random.answers.baselines.front().tally;
     lines.AddRow({"no obstacles", FailsIn(static_cast<std::uint64_t>(tally.failures),
                                           static_cast<std::uint64_t>(tally.runs()))});
   }
   lines.AddRow({"random cases", FailsIn(facts.random.summary.failing_runs, facts.random.summary.runs_done)});
-  if (search.answers.confirmations.empty()) {
+  if (search.directory == facts.random.directory) {
+    lines.AddRow({"obstacles", "not searched for: it fails without any, so that no layout is to blame"});
+  } else if (search.answers.confirmations.empty()) {
     lines.AddRow({"obstacles", fmt::format("a search of {} runs found no layout that breaks it reliably",
                                            FormatCount(search.summary.runs_done))});
   } else {
     AddFailures(search, lines);
   }
-  AddMargins(facts.margins, lines);
+  if (search.directory != facts.random.directory) AddMargins(facts.margins, plan, lines);
   lines.AddRow({"all of it", page});
   std::string text = fmt::format("{} with the controller {}, examined in {} runs\n\n{}", experiment.name,
                                  experiment.controller, FormatCount(facts.runs), lines.ToText());
-  if (const Confirmation* toughest = ToughestOf(search.answers.confirmations)) {
+  if (const auto smallest = SmallestFirst(search.answers.smallest_layouts, 1); !smallest.empty()) {
     Section next;
     next.commands = {
         {fmt::format("{} show {}", program, PastedPath(search.directory)), "every failure, and what to type"},
-        {fmt::format("{} corpus add {} {} --to corpus", program, PastedPath(search.directory), toughest->run),
-         "keep the toughest as a regression test"}};
+        {fmt::format("{} corpus add {} {} --to corpus", program, PastedPath(search.directory),
+                     smallest.front()->run),
+         "keep the smallest as a regression test"}};
     text += "\n" + ToText(next);
   }
   return text;
@@ -150,8 +184,8 @@ std::string ExaminationJson(const ExaminationFacts& facts, const std::string& di
                             const std::string& page) {
   const CampaignAnswers& answers = facts.search.answers;
   nlohmann::ordered_json empty;
-  if (!facts.search.answers.baselines.empty()) {
-    const FailureTally& tally = facts.search.answers.baselines.front().tally;
+  if (!facts.random.answers.baselines.empty()) {
+    const FailureTally& tally = facts.random.answers.baselines.front().tally;
     empty = {{"k", tally.failures}, {"n", tally.runs()}};
   }
   nlohmann::ordered_json smallest = nlohmann::ordered_json::array();

@@ -6,6 +6,7 @@
 
 #include "analysis/tables/table.h"
 #include "report/figures/campaign_facts.h"
+#include "study/examination_plan.h"
 
 namespace gauntlet {
 
@@ -16,11 +17,15 @@ struct ExaminationFacts {
   std::vector<Margin> margins = {};
   std::uint64_t runs = 0;  // in all of its campaigns
 };
-// Of the campaigns below `directory`. Errors: those of reading.
+// Of the campaigns below `directory`; where no search was made, its facts are those of the random cases.
+// Errors: those of reading.
 Result<ExaminationFacts> ReadExamination(const std::string& directory);
+// What confirming has found of the cases that the search in `campaign` has ended with, whatever else was
+// confirmed.
+Result<std::vector<Confirmation>> ExaminedCases(const std::string& campaign);
 
-std::string ExaminationText(const ExaminationFacts& facts, const std::string& program,
-                            const std::string& page);
+std::string ExaminationText(const ExaminationFacts& facts, const ExaminationPlan& plan,
+                            const std::string& program, const std::string& page);
 // {baseline: {empty: {k, n}, random: {k, n}}, distinct: [...], groupings: [...], smallest: [...], margins:
 // [...], runs, directory, report}.
 std::string ExaminationJson(const ExaminationFacts& facts, const std::string& directory,

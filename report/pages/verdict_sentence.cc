@@ -72,13 +72,14 @@ std::string CourseOf(const CampaignPages& pages) {
                        FormatCount(summary.runs_done));
   if (facts.fit) return OutcomeOf(*facts.fit);
   if (!facts.margins.empty()) return OutcomeOf(facts.margins.front());
-  if (summary.total_failures == 0) {
-    return fmt::format("The {} held out: in none of {} runs did it fail as a whole.{}", SwarmOf(facts),
+  // What is counted as failing is what the empty arena is asked for too.
+  if (summary.failing_runs == 0) {
+    return fmt::format("The {} held out: in none of {} runs did it fail.{}", SwarmOf(facts),
                        FormatCount(summary.runs_done), Confirmed(facts));
   }
-  const double share = static_cast<double>(summary.total_failures) / static_cast<double>(summary.runs_done);
-  return fmt::format("The {} broke: it failed as a whole in {} of {} runs ({}).{}{}{}", SwarmOf(facts),
-                     FormatCount(summary.total_failures), FormatCount(summary.runs_done), Percent(share),
+  const double share = static_cast<double>(summary.failing_runs) / static_cast<double>(summary.runs_done);
+  return fmt::format("The {} broke: it failed in {} of {} runs ({}).{}{}{}", SwarmOf(facts),
+                     FormatCount(summary.failing_runs), FormatCount(summary.runs_done), Percent(share),
                      Learning(pages.courses), Toughest(facts), Confirmed(facts));
 }
 
@@ -87,7 +88,7 @@ std::string CourseOf(const CampaignPages& pages) {
 std::string VerdictOf(const CampaignPages& pages) {
   const CampaignFacts& facts = pages.facts;
   const std::string course = CourseOf(pages);
-  if (facts.summary.total_failures == 0 || !HasBaseline(facts.plans.front().experiment.search.algorithm))
+  if (facts.summary.failing_runs == 0 || !HasBaseline(facts.plans.front().experiment.search.algorithm))
     return course;
   const std::string baseline = InWords(facts.answers.baselines, "gauntlet", facts.directory);
   return Matters(facts.answers.baselines) ? baseline + " " + course : course + " " + baseline;

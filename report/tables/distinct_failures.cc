@@ -24,31 +24,34 @@ Json SmallestJson(const SmallestLayout& smallest) {
 
 Section TellGrouping(const FailureGrouping& grouping, int told, std::size_t most, const std::string& program,
                      const std::function<std::string(RunId)>& link) {
-  if (!grouping.agreement)
+  if (!grouping.overall)
     return {.title = fmt::format("{} is not known of these failures", grouping.title),
             .sentences = {grouping.unknown}};
   const std::string agreement =
-      fmt::format("{:.2f} (kappa: 0 = no more often than runs of different cases, 1 = always)",
-                  std::max(0.0, *grouping.agreement));
+      grouping.agreement
+          ? fmt::format(
+                "Failed runs of one case agree in it by {:.2f} (kappa: 0 = no more often than runs of "
+                "different cases, 1 = always)",
+                std::max(0.0, *grouping.agreement))
+          : "How well it repeats is not known: there is one case, or all failed runs are alike in it";
   if (!grouping.Used())
     return {.title = fmt::format("{} does not tell these failures apart", grouping.title),
-            .sentences = {fmt::format("Failed runs of one case agree in it by {}, which takes {} at least.",
-                                      agreement, kLeastAgreement),
+            .sentences = {fmt::format("{}, which takes {} at least.", agreement, kLeastAgreement),
                           fmt::format("Most frequent: {}, in {} of {} failed runs.", grouping.overall->value,
                                       grouping.overall->runs, grouping.overall->of)}};
   std::vector<const DistinctFailure*> groups;
   for (const DistinctFailure& one : grouping.groups) groups.push_back(&one);
-  Section section{
-      .title = fmt::format("{} by {}, of {}", Counted(groups.size(), "distinct failure"), grouping.phrase,
-                           Counted(static_cast<std::uint64_t>(told), "failing case")),
-      .table = DistinctFailuresTable(groups, program, link).First(most)};
+  Section section{.title = fmt::format("{} by {}, in {} with {} failed runs or more",
+                                       Counted(groups.size(), "distinct failure"), grouping.phrase,
+                                       Counted(static_cast<std::uint64_t>(told), "case"), kRunsForGroup),
+                  .table = DistinctFailuresTable(groups, program, link).First(most)};
   if (groups.size() > most)
     section.sentences.push_back(fmt::format("and {} more; see show --json", groups.size() - most));
   if (grouping.mixed > 0)
     section.sentences.push_back(
         fmt::format("Mixed, and not counted: {} whose failed runs do not mostly agree.",
                     Counted(static_cast<std::uint64_t>(grouping.mixed), "case")));
-  section.sentences.push_back(fmt::format("Failed runs of one case agree in it by {}.", agreement));
+  section.sentences.push_back(agreement + ".");
   return section;
 }
 
@@ -57,8 +60,8 @@ Section TellTooFew(const CampaignAnswers& answers, const DistinctFailures& disti
   if (distinct.too_few == 0) return {};
   Section section{
       .title = fmt::format("{} of {} too few failed runs to say which failure {} is", distinct.too_few,
-                           Counted(static_cast<std::uint64_t>(distinct.failing), "failing case") +
-                               (distinct.failing == 1 ? " has" : " have"),
+                           Counted(static_cast<std::uint64_t>(distinct.failing), "case") +
+                               " that failed again " + (distinct.failing == 1 ? "has" : "have"),
                            distinct.too_few == 1 ? "it" : "each"),
       .sentences = {fmt::format("It takes {}. `gauntlet confirm` with --replicates 20, or with more "
                                 "where they seldom fail, simulates more of them.",
@@ -111,8 +114,8 @@ Table DistinctFailuresTable(const std::vector<const DistinctFailure*>& failures,
                   OutOfCell(toughest.tally.failures, toughest.tally.runs()), PercentCell(toughest.interval),
                   left, failure->Confirmed(),
                   JsonCell({{"campaign", toughest.campaign}, {"run", failure->typical->id}}),
-                  fmt::format("{} replay {} {} --svg failure-{}.svg", program, PastedPath(toughest.campaign),
-                              failure->typical->id, table.size() + 1)});
+                  fmt::format("{} replay {} {} --svg {}-{}.svg", program, PastedPath(toughest.campaign),
+                              failure->typical->id, failure->feature, table.size() + 1)});
   }
   return table;
 }

@@ -148,6 +148,11 @@ void RankMargins(std::vector<Margin>& margins) {
   }
 }
 
+std::string CrossesOf(const Margin& margin) {
+  constexpr const char* kSides[] = {"within", "below_everywhere", "above_everywhere", "undecided"};
+  return kSides[static_cast<int>(SideOf(margin))];
+}
+
 std::string OutcomeOf(const Margin& margin) {
   const std::string& path = margin.plan.key.key.path;
   const std::string share = PercentOf(margin.plan.share);
@@ -216,7 +221,6 @@ std::vector<Section> TellMargins(const std::vector<Margin>& margins, const std::
 nlohmann::ordered_json MarginValues(const std::vector<Margin>& margins) {
   using Json = nlohmann::ordered_json;
   Json keys = Json::array();
-  constexpr const char* kSides[] = {"within", "below_everywhere", "above_everywhere", "undecided"};
   for (const Margin& one : margins) {
     const MarginEstimate e = one.estimate.value_or(MarginEstimate{});
     const auto number = [](double value) { return JsonValue(NumberValue(value)); };
@@ -239,7 +243,7 @@ nlohmann::ordered_json MarginValues(const std::vector<Margin>& margins) {
                     {"low", one.plan.key.low},
                     {"high", one.plan.key.high},
                     {"logarithmic", one.plan.key.log},
-                    {"crosses", kSides[static_cast<int>(SideOf(one))]},
+                    {"crosses", CrossesOf(one)},
                     {"falls", e.falls},
                     {"design_effect", e.design_effect},
                     {"rank", one.rank},

@@ -30,6 +30,8 @@ Result<std::vector<Margin>> ReadMargins(const std::string& dir);
 // Gives each its rank.
 void RankMargins(std::vector<Margin>& margins);
 
+// For programs: "within", "below_everywhere", "above_everywhere", "undecided".
+std::string CrossesOf(const Margin& margin);
 // "Failures cross 50 % where noise.x.drop is about 0.125 (0.1 to 0.15, 95 %)."
 std::string OutcomeOf(const Margin& margin);
 std::vector<Section> TellMargins(const std::vector<Margin>& margins, const std::string& dir,

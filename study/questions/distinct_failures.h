@@ -29,18 +29,18 @@ struct DistinctFailure {
 
 // Failures told apart by one feature.
 struct FailureGrouping {
-  const char* feature = "";         // for programs: "mechanism", "place"
-  const char* title = "";           // "What happens"
-  const char* phrase = "";          // "what happens"
-  const char* unknown = "";         // why no run's is known, a sentence
-  std::optional<double> agreement;  // AgreementWithin; nothing: no run's is known
-  std::optional<LeadingFeature> overall = {};  // of all failed runs together
+  const char* feature = "";                    // for programs: "mechanism", "place"
+  const char* title = "";                      // "What happens"
+  const char* phrase = "";                     // "what happens"
+  const char* unknown = "";                    // why no run's is known, a sentence
+  std::optional<double> agreement;             // AgreementWithin
+  std::optional<LeadingFeature> overall = {};  // of all failed runs together; nothing: no run's is known
   // The toughest first, of equally tough ones that with most cases. None where runs of a case agree too
   // little.
   std::vector<DistinctFailure> groups = {};
   int mixed = 0;  // cases that have runs enough, no half of which agree
 
-  bool Used() const { return agreement && *agreement >= kLeastAgreement; }
+  bool Used() const { return overall && (!agreement || *agreement >= kLeastAgreement); }
 };
 
 struct DistinctFailures {

@@ -77,17 +77,13 @@ std::optional<double> AgreementWithin(std::span<const std::vector<std::string>> 
       squares += share * share;
     }
   }
-  if (count == 0.0) return std::nullopt;
+  if (count < 2.0) return std::nullopt;
   within /= count;
-  if (count > 1.0) {
-    for (const auto& [value, sum] : shares) of_two_cases += sum * sum;
-    of_two_cases = (of_two_cases - squares) / (count * (count - 1.0));
-  } else {
-    of_two_cases = within;
-  }
+  for (const auto& [value, sum] : shares) of_two_cases += sum * sum;
+  of_two_cases = (of_two_cases - squares) / (count * (count - 1.0));
   constexpr double kRounding = 1e-12;
-  if (within > 1.0 - kRounding) return 1.0;
-  return (within - of_two_cases) / std::max(1.0 - of_two_cases, kRounding);
+  if (of_two_cases > 1.0 - kRounding) return std::nullopt;
+  return (within - of_two_cases) / (1.0 - of_two_cases);
 }
 
 }  // namespace gauntlet

@@ -50,8 +50,9 @@ struct LeadingFeature {
 std::optional<LeadingFeature> LeadingOf(std::span<const std::string> values);
 
 // How much more often two failed runs of one case agree than two of different cases, as a share of what is
-// possible (Cohen's kappa, each case with the same weight): 1 = always, 0 = no more often. 1 where all agree.
-// Cases with fewer than two runs say nothing; "" is no value. Nothing: no case says anything.
+// possible (Cohen's kappa, each case with the same weight): 1 = always, 0 = no more often. Cases with fewer
+// than two runs say nothing; "" is no value. Nothing: there are not two cases, or all runs are alike, so that
+// there is no difference to agree in.
 std::optional<double> AgreementWithin(std::span<const std::vector<std::string>> cases);
 // A feature that agrees less does not name groups.
 inline constexpr double kLeastAgreement = 0.5;

@@ -92,15 +92,15 @@ TEST(ReportPageTest, ForbidsTheNetworkAndNamesNoOther) {
 
 TEST(VerdictTest, SaysWhatCameOfIt) {
   CampaignPages pages = PagesWithNames("x");
-  pages.facts.summary.total_failures = 1;
+  pages.facts.summary.failing_runs = 1;
   pages.facts.cases.front().total_failures = 1;
   EXPECT_EQ(VerdictOf(pages),
-            "The swarm of birds broke: it failed as a whole in 1 of 1 runs (100.0 %). The toughest test "
+            "The swarm of birds broke: it failed in 1 of 1 runs (100.0 %). The toughest test "
             "case, number 1, made the swarm fail in 1 of 1 runs. How often it fails without any obstacle is "
             "not known: "
             "gauntlet baseline x looks.");
-  pages.facts.summary.total_failures = 0;
-  EXPECT_EQ(VerdictOf(pages), "The swarm of birds held out: in none of 1 runs did it fail as a whole.");
+  pages.facts.summary.failing_runs = 0;
+  EXPECT_EQ(VerdictOf(pages), "The swarm of birds held out: in none of 1 runs did it fail.");
   pages.facts.summary.runs_failed = 1;
   EXPECT_EQ(VerdictOf(pages), "No run gave a result: of 1 runs none could be simulated to its end.");
   pages.facts.summary.runs_done = 0;

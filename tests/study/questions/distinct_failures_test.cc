@@ -57,7 +57,15 @@ TEST(DistinctFailures, WhatIsMixedOrHasTooFewRunsIsNotCounted) {
   EXPECT_EQ(distinct.groupings[0].mixed, 1);
   ASSERT_THAT(distinct.groupings[0].groups, SizeIs(2));
   EXPECT_DOUBLE_EQ(distinct.groupings[0].groups[0].share, 1.0 / 3.0);
-  EXPECT_EQ(distinct.groupings[1].agreement, std::nullopt) << "no run has a place";
+  EXPECT_FALSE(distinct.groupings[1].Used()) << "no run has a place";
+}
+
+TEST(DistinctFailures, OneCaseIsOfWhatLeadsInIt) {
+  const std::vector<Confirmation> known = {Failed(1, 18, 1, "here")};
+  const DistinctFailures distinct = DistinctFailuresOf(known, {});
+  EXPECT_EQ(distinct.groupings[0].agreement, std::nullopt);
+  ASSERT_THAT(distinct.groupings[0].groups, SizeIs(1));
+  EXPECT_EQ(distinct.groupings[0].groups[0].name, "stood");
 }
 
 TEST(DistinctFailures, AFeatureInWhichRunsOfACaseDoNotAgreeNamesNone) {
