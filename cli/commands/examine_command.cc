@@ -36,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 using Command = std::vector<std::string>;
 
-constexpr std::size_t kExaminedRuns = 30;  // of the page
+constexpr std::size_t kExaminedRuns = 30;  // that the page shows
 
 struct ExamineOptions : LocalOptions {
   std::string budget;
@@ -317,10 +317,12 @@ and gone on with like any other:
   minimise, blame  the toughest case of up to three distinct failures: which obstacles does it take?
   margin           faulty robots, and noise of each device that the robots are known to have: from where on does
                    it fail?
-and ends with ten lines and a page. A swarm that fails without any obstacle gets no more than the first step. DIR
-(default: campaigns/NAME-examined) may hold what an earlier such command has left. After Ctrl-C, or when it was killed, the same command goes on; it gives the
-same answer for any number of workers. --dry-run names the commands that are known before and the time, to give them singly, or as the
-job of a cluster: sbatch --cpus-per-task 32 --requeue --wrap 'gauntlet examine ...'.
+and ends with ten lines and a page. A swarm that fails without any obstacle gets no more than the first step.
+
+DIR (default: campaigns/NAME-examined) may hold what an earlier such command has left: after Ctrl-C, or when it
+was killed, the same command goes on. The answer is the same for any number of workers. --dry-run names the time
+and the commands that are known before, to give them singly. As the job of a cluster:
+  sbatch --cpus-per-task 32 --requeue --wrap 'gauntlet examine EXPERIMENT -o report.html'
 
 Examples:
   gauntlet examine flocking -o report.html

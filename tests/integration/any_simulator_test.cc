@@ -52,7 +52,7 @@ class ProgramTest : public testing::Test {
 };
 
 TEST_F(ProgramTest, ARandomOneIsCalledSoAndNobodyIsBlamed) {
-  Program("echo \"{\\\"items\\\": $(date +%N)}\"\n");
+  Program("echo \"{\\\"items\\\": $(date +1%N)}\"\n");
   const ProcessResult result = Evolve({"--workers", "2"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, Not(HasSubstr("quarantine")));

@@ -283,7 +283,8 @@ TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
 TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "c", 24);
-  ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--replicates", "20", "--quiet"}).exit_code,
+            0);
   const nlohmann::json found = FoundMinimal(Minimise(scratch / "c", Runs(scratch / "c", true, 2), 2));
   const nlohmann::json shown = Show(scratch / "c");
   std::set<std::size_t> left;  // obstacles of all
