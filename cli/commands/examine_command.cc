@@ -29,6 +29,7 @@
 #include "study/examination_plan.h"
 #include "study/questions/distinct_failures.h"
 #include "study/questions/empty_arena.h"
+#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {
@@ -148,11 +149,10 @@ class Examination {
     return tally && !CheckEmptyArena(experiment_, *tally);
   }
 
+  // Cases that the search has ended with.
   bool FoundSomething() const {
-    const Result<CampaignFacts> facts = ReadFacts(directory_ + "/search");
-    const SearchSummary* only = facts ? facts->summary.OnlySearch() : nullptr;
-    return only == nullptr ||
-           (only->archive.axes.empty() ? only->failing_runs > 0 : !only->archive.failures.empty());
+    const auto found = PopulationCases(directory_ + "/search");
+    return !found || !found->cases.empty();
   }
 
   // The toughest case of each distinct failure, those by mechanism first; then the toughest others.
