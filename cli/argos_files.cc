@@ -14,6 +14,7 @@
 #include "controllers/run_start.h"
 #include "master/directory/commands.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "search/cases/argos_controllers.h"
 #include "search/cases/argos_export.h"
 #include "search/cases/argos_template.h"
@@ -74,7 +75,8 @@ Result<ArgosFile> FileOfCommand(RunId id, const sim::RunSpec& spec) {
   const auto form =
       std::ranges::find(definition.files, definition.case_template, &controllers::command::File::name);
   if (!definition.case_template.ends_with(".argos") || form == definition.files.end())
-    return InvalidInput(fmt::format("run {} is one of a program that is given no .argos file", id));
+    return InvalidInput(
+        fmt::format("run {} is one of a program that is given no .argos file", proto::RunText(id)));
   const auto folder =
       std::filesystem::path(controllers::FindPlugin(spec.scenario_plugin)->file).parent_path();
   TRY(const std::string text, ReadSmallFile(folder / kCommandFiles / form->hash, kMostControllerBytes));
@@ -85,12 +87,14 @@ Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
                          const std::optional<ArgosControllers>& controllers) {
   TRY(const std::optional<StoredRun> stored, campaign.view.store->LoadRun(id));
   if (!stored.has_value())
-    return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
+    return Error{ErrorKind::kNotFound,
+                 fmt::format("there is no run {} in this campaign", proto::RunText(id))};
   TRY(const sim::RunSpec spec, proto::DecodeRunSpec(stored->spec));
   if (spec.scenario == controllers::command::kScenario) return FileOfCommand(id, spec);
   const Result<sim::RunStart> start = controllers::StartOf(spec);
   if (!start)
-    return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};
+    return Error{start.error().kind,
+                 fmt::format("run {} cannot begin: {}", proto::RunText(id), start.error().message)};
   std::optional<ArgosControllers> own = controllers;
   const std::string unlike = own && !spec.plugin.empty() ? Unlikeness(*own, spec) : "";
   if (own && !spec.plugin.empty()) own = WithParameters(std::move(*own), spec.controller_parameters);

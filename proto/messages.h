@@ -24,7 +24,7 @@ inline constexpr std::size_t kMaxResultBytes = kMaxMessageBytes - 64u * 1024u;
 // How much of what a failed run printed is kept: the end.
 inline constexpr std::size_t kMaxStderrTail = 4096;
 
-using RunId = std::uint64_t;       // 1, 2, 3, ... in logical order within a campaign
+using RunId = std::uint64_t;       // 1, 2, 3, ... in logical order within a search; see proto/run_text.h
 using InstanceId = std::uint64_t;  // random, not 0, one per worker process
 using Fence = std::uint64_t;  // fencing number: names a lease, grows within a campaign, is never used twice
 

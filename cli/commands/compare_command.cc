@@ -222,7 +222,8 @@ std::string AxisName(const Outcome& outcome, const std::string& metric) {
 std::string Drawing(const Outcome& outcome, const std::string& metric) {
   const analysis::Comparison& c = outcome.comparison();
   return analysis::DrawBoxes(
-      {.title = fmt::format("{}: set 1 against set 2", metric),
+      {.title =
+           fmt::format("{}: {} against {}", metric, outcome.first.values.name, outcome.second.values.name),
        .outcome = fmt::format("A = {:.3f} ({}), {}", c.test.a, c.effect,
                               analysis::TestInWords(outcome.held.p, outcome.held.p_by)),
        .axis_name = AxisName(outcome, metric),

@@ -17,6 +17,7 @@
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
+#include "proto/run_text.h"
 #include "report/figures/replayed_figure.h"
 #include "search/cases/case_file.h"
 #include "search/experiment/experiment_file.h"
@@ -117,19 +118,19 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   const auto confirmed =
       std::ranges::find(known, ConfirmationKey(experiment, one.test_case), &Confirmation::key);
   if (confirmed == known.end()) {
-    return InvalidInput(
-        fmt::format("run {} was not simulated again with fresh seeds: `{} confirm {} {}` does it", run,
-                    context.program, PastedPath(options.directory), run));
+    return InvalidInput(fmt::format(
+        "run {} was not simulated again with fresh seeds: `{} confirm {} {}` does it", proto::RunText(run),
+        context.program, PastedPath(options.directory), proto::RunText(run)));
   }
   Keepsake kept;
   kept.content.found = {confirmed->tally.failures,
                         confirmed->tally.runs(),
                         {confirmed->interval.low, confirmed->interval.high}};
-  TRY(CheckFails(fmt::format("run {}", run), kept.content.found));
+  TRY(CheckFails(fmt::format("run {}", proto::RunText(run)), kept.content.found));
   TRY(const CampaignReplay replay,
       context.campaigns.Replay(confirmed->campaign, confirmed->Typical()->id, /*scratch=*/""));
   kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay.report));
-  kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
+  kept.content.found_in = fmt::format("run {} of {}", proto::RunText(run), experiment.name);
   kept.content.settings = SettingsOf(experiment);
   kept.plugins = PluginsOf(experiment);
   kept.content.document = {std::move(one.test_case)};

@@ -82,14 +82,14 @@ Result<ExportOptions> Judge(const ExportCommandOptions& options) {
   return judged;
 }
 
-struct Condition {
+struct ExportRule {
   bool finished = false;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
 };
 
-Result<Condition> ConditionOf(const StoredCampaign& campaign, const std::string& directory) {
+Result<ExportRule> ConditionOf(const StoredCampaign& campaign, const std::string& directory) {
   TRY(const CampaignSummary totals, SummariseTotals(campaign.plans, *campaign.view.store));
-  Condition condition{totals.finished, {}};
+  ExportRule condition{totals.finished, {}};
   std::vector<std::string>& notes = condition.notes;
   if (!campaign.being_written.empty()) notes.push_back(campaign.being_written);
   if (!totals.finished)
@@ -99,7 +99,7 @@ Result<Condition> ConditionOf(const StoredCampaign& campaign, const std::string&
 }
 
 std::string HeadJson(const StoredCampaign& campaign, const std::string& directory,
-                     const Condition& condition) {
+                     const ExportRule& condition) {
   const Experiment& experiment = campaign.plans.front().experiment;
   return JsonText({{"experiment", experiment.name},
                    {"directory", directory},
@@ -139,7 +139,7 @@ Result<ExportReport> WriteTableFile(const StoredCampaign& campaign, const Export
 Result<ExitCode> RunExport(CommandContext& context, const ExportCommandOptions& options) {
   TRY(const ExportOptions judged, Judge(options));
   TRY(const StoredCampaign campaign, OpenStoredCampaign(options.directory));
-  TRY(const Condition condition, ConditionOf(campaign, options.directory));
+  TRY(const ExportRule condition, ConditionOf(campaign, options.directory));
   for (const std::string& note : condition.notes) PrintMessage(context, note);
 
   if (WantsCaseFiles(options, judged.what)) {

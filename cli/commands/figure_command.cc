@@ -11,8 +11,10 @@
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
+#include "proto/run_text.h"
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
+#include "report/figures/condition_figure.h"
 #include "report/figures/fit_figure.h"
 #include "report/figures/margin_figure.h"
 #include "report/figures/set_comparison.h"
@@ -130,13 +132,14 @@ Result<ExitCode> RunFigureCommand(CommandContext& context, const FigureOptions& 
   std::vector<NamedFigure> figures;
   if (run == 0) {
     figures = FiguresOf(CoursesOf(facts), MapsOf(facts));
+    std::ranges::move(ConditionFigures(facts), std::back_inserter(figures));
     std::ranges::move(ArchiveFigures(facts), std::back_inserter(figures));
     std::ranges::move(FitFigures(facts), std::back_inserter(figures));
     std::ranges::move(MarginFigures(facts), std::back_inserter(figures));
   } else {
     TRY(shown, ShowRuns(facts, {run}));
     if (const std::string& trouble = shown.front().trouble; !trouble.empty()) {
-      PrintMessage(context, fmt::format("run {}: {}", run, trouble));
+      PrintMessage(context, fmt::format("run {}: {}", proto::RunText(run), trouble));
       return kExitNegative;
     }
     figures = FiguresOf(shown.front());

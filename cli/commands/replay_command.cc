@@ -15,6 +15,7 @@
 #include "cli/output/summary.h"
 #include "cli/run_campaign.h"
 #include "master/campaign/verdict_text.h"
+#include "proto/run_text.h"
 #include "report/figures/replayed_figure.h"
 #include "sim/robot/disturbances.h"
 #include "study/questions/questioned_cases.h"
@@ -79,8 +80,8 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
   table.AddRow({"stored hash", fmt::format("{:016x}", report.stored_result.hash)});
   table.AddRow(
       {"new hash", fmt::format("{:016x}{}", report.replayed.hash, same ? "  (the same)" : "  (DIFFERENT)")});
-  std::string text = fmt::format("{}, run {}: {}\n\n", replay.experiment.name, report.stored.id,
-                                 same ? "reproduced" : "NOT REPRODUCED") +
+  std::string text = fmt::format("{}, run {}: {}\n\n", replay.experiment.name,
+                                 proto::RunText(report.stored.id), same ? "reproduced" : "NOT REPRODUCED") +
                      table.ToText();
   if (!same) {
     text += "\nWhat differs\n";
@@ -117,9 +118,10 @@ Result<ExitCode> RunReplay(CommandContext& context, const ReplayOptions& options
   if (replay.report.differences.empty()) return kExitDone;
   const bool may_differ =
       replay.reproducible == Reproducible::kUnknown || replay.reproducible == Reproducible::kNo;
-  PrintMessage(context, fmt::format("run {} of {} was not reproduced{}: {}", run, options.directory,
-                                    may_differ ? ", and its program is not known to be reproducible" : "",
-                                    replay.report.differences.front()));
+  PrintMessage(context,
+               fmt::format("run {} of {} was not reproduced{}: {}", proto::RunText(run), options.directory,
+                           may_differ ? ", and its program is not known to be reproducible" : "",
+                           replay.report.differences.front()));
   return kExitNegative;
 }
 
@@ -129,7 +131,11 @@ void AddReplay(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("replay", "simulate one stored run again, check its hash and draw it", RunReplay);
   AddDirectory(command, options.directory);
-  command.add_option("RUN_ID", options.run, "number of the run, as 'show' prints it")->required();
+  command
+      .add_option(
+          "RUN_ID", options.run,
+          "number of the run, as 'show' prints it: RUN, or SEARCH:RUN where there are several searches")
+      ->required();
   AddValue(command, "--svg", "F", options.svg,
            "draw the arena, the trajectory of every robot, and where the swarm split");
   AddValue(command, "--timeline", "F", options.timeline,

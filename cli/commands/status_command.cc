@@ -10,6 +10,7 @@
 #include "cli/options/options.h"
 #include "cli/options/stop_signal.h"
 #include "proto/json_text.h"
+#include "proto/run_text.h"
 #include "slurm/slurm_campaign.h"
 #include "study/study_campaigns.h"
 
@@ -31,13 +32,19 @@ std::string Seconds(double seconds) {
 
 std::string RunsOf(const Json& worker) {
   std::string text;
+  std::vector<proto::RunId> waiting;  // behind those that run there
   for (const Json& run : worker["runs"]) {
-    const bool waits = run.value("state", "") == "waiting";  // behind those that run there
+    const auto id = run["run"].get<proto::RunId>();
     const auto attempt = run.value("attempt", std::uint64_t{1});
-    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
-                        waits ? "next" : Seconds(run["seconds"]),
+    if (run.value("state", "") == "waiting" && attempt == 1) {
+      waiting.push_back(id);
+      continue;
+    }
+    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", proto::RunText(id),
+                        run.value("state", "") == "waiting" ? "next" : Seconds(run["seconds"]),
                         attempt > 1 ? fmt::format(", attempt {}", attempt) : "");
   }
+  if (!waiting.empty()) text += fmt::format("{}next {}", text.empty() ? "" : ", ", proto::RunRanges(waiting));
   return text.empty() ? "-" : text;
 }
 
@@ -84,10 +91,10 @@ std::string StatusText(const Json& status, const std::string& directory) {
   }
   text += "\n";
   if (status.contains("runs_done")) {
-    text +=
-        fmt::format("generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n", count("generation"),
-                    count("generations"), FormatCount(count("runs_done")), count("runs_running"),
-                    count("runs_queued") + count("runs_ahead"), status.value("runs_per_second", 0.0));
+    const std::string searches = Printable(status.value("searches_in_words", ""));
+    text += fmt::format("{}{}{} runs done, {} running, {} waiting, {:.1f}/s\n", searches,
+                        searches.empty() ? "" : ", ", FormatCount(count("runs_done")), count("runs_running"),
+                        count("runs_queued") + count("runs_ahead"), status.value("runs_per_second", 0.0));
   }
   if (count("nondeterministic") > 0) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",

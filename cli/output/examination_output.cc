@@ -11,6 +11,7 @@
 #include "master/directory/campaign_directory.h"
 #include "master/directory/campaign_ownership.h"
 #include "proto/json_text.h"
+#include "proto/run_text.h"
 #include "report/tables/distinct_failures.h"
 #include "study/questions/question_table.h"
 
@@ -81,11 +82,11 @@ void AddFailures(const CampaignFacts& search, Table& lines) {
   }
   for (const SmallestLayout* one : SmallestFirst(answers.smallest_layouts, kMostLayouts)) {
     const proto::CaseFailures& verified = one->document.lineage->verified;
-    lines.AddRow(
-        {"smallest", fmt::format("{}, run {}: {}",
-                                 Counted(one->document.test_case.obstacles.size(), "obstacle"), one->run,
-                                 FailsIn(static_cast<std::uint64_t>(verified.failures),
-                                         static_cast<std::uint64_t>(verified.runs)))});
+    lines.AddRow({"smallest",
+                  fmt::format("{}, run {}: {}", Counted(one->document.test_case.obstacles.size(), "obstacle"),
+                              proto::RunText(one->run),
+                              FailsIn(static_cast<std::uint64_t>(verified.failures),
+                                      static_cast<std::uint64_t>(verified.runs)))});
   }
 }
 

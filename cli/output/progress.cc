@@ -51,7 +51,9 @@ std::string LiveProgressLine(const CampaignProgress& progress, std::size_t colum
   };
   constexpr int kBarRank = 6;
   std::vector<Part> parts;
-  if (progress.search.generations > 1) {
+  if (progress.each.searches > 1) {
+    parts.push_back({1, fmt::format("{}/{} searches", progress.each.finished, progress.each.searches)});
+  } else if (progress.search.generations > 1) {
     parts.push_back({1, fmt::format("gen {}/{}", progress.search.generation, progress.search.generations)});
   }
   if (progress.runs_planned > 0) parts.push_back({kBarRank, ""});
@@ -88,9 +90,7 @@ std::string LiveProgressLine(const CampaignProgress& progress, std::size_t colum
 
 std::string PlainProgressLine(const CampaignProgress& progress) {
   std::string line;
-  if (progress.search.generations > 1) {
-    line += fmt::format("generation {}/{}, ", progress.search.generation, progress.search.generations);
-  }
+  if (const std::string words = progress.each.InWords(); !words.empty()) line += words + ", ";
   line += fmt::format("runs {} ({}/s), best {}, mean {}, total failures {}", Runs(progress),
                       Rate(progress.runs_per_second), FormatFitness(progress.best_fitness),
                       FormatFitness(progress.mean_fitness), FormatCount(progress.total_failures));

@@ -5,6 +5,7 @@
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/json_text.h"
+#include "report/tables/conditions.h"
 #include "report/tables/distinct_failures.h"
 #include "report/tables/summary_tables.h"
 
@@ -103,6 +104,7 @@ Json SweepJson(const CampaignSummary& summary, const std::string& directory) {
           {"nondeterministic", summary.nondeterministic > 0},
           {"verdicts_of_one_worker", summary.lone_verdicts},
           {"finished", summary.finished},
+          {"conditions", ConditionsTable(ConditionsOf(summary)).ToJson()},
           {"searches", std::move(searches)}};
 }
 

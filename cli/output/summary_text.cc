@@ -10,7 +10,10 @@
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/run_failure.h"
+#include "proto/run_text.h"
+#include "report/tables/conditions.h"
 #include "report/tables/distinct_failures.h"
+#include "report/tables/next_commands.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 
@@ -20,6 +23,7 @@ namespace {
 constexpr std::size_t kMostGenerations = 12;  // rows of the table
 constexpr std::size_t kMostMembers = 10;
 constexpr std::size_t kMostFailures = 20;  // that are listed
+constexpr std::size_t kShownSearches = 30;
 constexpr std::size_t kNoteWidth = 100;
 
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
@@ -70,7 +74,9 @@ std::string Members(const SearchSummary& summary) {
   const std::string title = members.size() > kMostMembers ? fmt::format("The toughest {} of {} test cases",
                                                                         kMostMembers, members.size())
                                                           : "The test cases, toughest first";
-  return fmt::format("\n{}\n{}", title, PopulationTable(members, named).First(kMostMembers).ToText());
+  const std::vector first(
+      members.begin(), members.begin() + static_cast<std::ptrdiff_t>(std::min(kMostMembers, members.size())));
+  return fmt::format("\n{}\n{}", title, PopulationTable(first, named).ToText());
 }
 
 // What was tried in vain.
@@ -128,12 +134,6 @@ std::string Hints(const HintContext& context, bool finished, const std::vector<N
   return ToText(section);
 }
 
-// "gauntlet replay DIR 812 --svg case-7.svg"
-std::string ReplayHint(const HintContext& context, RunId run, std::string_view what, std::uint64_t number) {
-  return fmt::format("{} replay {} {} --svg {}-{}.svg", context.program, PastedPath(context.directory), run,
-                     what, number);
-}
-
 std::string WarningsText(const CampaignSummary& summary) {
   std::string text;
   for (const std::string& warning : WarningsOf(summary)) text += Printable(warning) + "\n";
@@ -144,8 +144,9 @@ std::string WarningsText(const CampaignSummary& summary) {
 std::string DescribeSmallest(const SmallestLayout& smallest) {
   const std::size_t obstacles = smallest.document.test_case.obstacles.size();
   const proto::CaseFailures& verified = smallest.document.lineage->verified;
-  return fmt::format("run {}, minimised to {} obstacle{}, fails in {} of {} runs", smallest.run, obstacles,
-                     obstacles == 1 ? "" : "s", verified.failures, verified.runs);
+  return fmt::format("run {}, minimised to {} obstacle{}, fails in {} of {} runs",
+                     proto::RunText(smallest.run), obstacles, obstacles == 1 ? "" : "s", verified.failures,
+                     verified.runs);
 }
 
 // What is to be read before all else; "" = nothing.
@@ -192,46 +193,22 @@ std::string DistinctFailuresText(const CampaignAnswers& answers, const std::stri
 std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& answers,
                       const HintContext& context) {
   const auto finished = std::ranges::count(summary.searches, true, &SearchSummary::finished);
-  const std::string directory = PastedPath(context.directory);
   const ObservedReproducibility& seen = summary.reproducibility;
-  return fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
-                     Printable(summary.experiment), summary.searches.size(), finished,
-                     FormatCount(summary.runs_done), FormatCount(summary.total_failures)) +
-         WarningsText(summary) + BaselineWarning(summary.searches.front(), answers, context) +
-         (seen.observed() ? fmt::format("reproducible: {}\n\n", Printable(InWords(seen))) : "") +
-         SearchesTable(summary).ToText() + DistinctFailuresText(answers, context.program) +
-         Hints(context, summary.finished,
-               {{fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
-                             summary.searches.size()),
-                 "is one search's population tougher than another's?"}});
-}
-
-// What is most worth typing next about a campaign of one search.
-std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const CampaignAnswers& answers,
-                                     const HintContext& context) {
-  const std::string directory = PastedPath(context.directory);
-  std::vector<NextCommand> commands;
-  if (const SearchRow* row = FindSearch(summary.search); row != nullptr && row->varies_settings)
-    commands.push_back(
-        {fmt::format("{} {} {}", context.program, row->command, directory), "what it has found"});
-  if (const auto members = Toughest(summary); !members.empty() && !ToughestOf(answers.confirmations)) {
-    const PopulationMember& best = *members.front();
-    commands.push_back(
-        {ReplayHint(context, best.runs.back(), "case", best.id), "see what happened in the toughest case"});
-  }
-  if (summary.failing_runs > 0 && answers.confirmations.empty())
-    commands.push_back(
-        {fmt::format("{} confirm {} --all-failing --replicates 20", context.program, directory),
-         "how many different failures are these?"});
-  const Confirmation* toughest = ToughestOf(answers.confirmations);
-  if (toughest == nullptr) return commands;
-  if (std::ranges::count(answers.smallest_layouts, toughest->run, &SmallestLayout::run) == 0) {
-    commands.push_back({fmt::format("{} minimise {} {}", context.program, directory, toughest->run),
-                        "which of its obstacles does the toughest case take?"});
-    commands.push_back({fmt::format("{} blame {} {}", context.program, directory, toughest->run),
-                        "how much does each of them do?"});
-  }
-  return commands;
+  const std::vector<Condition> conditions = ConditionsOf(summary);
+  const std::size_t searches = summary.searches.size();
+  std::string text = fmt::format("{}: {} searches, {} finished, {} runs\n\n", Printable(summary.experiment),
+                                 searches, finished, FormatCount(summary.runs_done)) +
+                     WarningsText(summary) + BaselineWarning(summary.searches.front(), answers, context) +
+                     (seen.observed() ? fmt::format("reproducible: {}\n\n", Printable(InWords(seen))) : "");
+  if (conditions.size() > 1)
+    text += "How often it fails under each setting\n" +
+            ConditionsTable(conditions).First(kShownSearches).ToText() + "\nThe searches\n";
+  text += SearchesTable(summary, kShownSearches).ToText();
+  if (searches > kShownSearches)
+    text += fmt::format("  and {} more; --json tells all\n", searches - kShownSearches);
+  text += DistinctFailuresText(answers, context.program);
+  return text + Hints(context, summary.finished,
+                      NextCommandsOf(summary, answers, context.program, context.directory));
 }
 
 }  // namespace
@@ -256,7 +233,8 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
   return text + facts.ToText() + RunsWithoutAResult(*only, context.directory) + Generations(*only) +
          (only->archive.axes.empty() ? Members(*only) : ArchiveText(*only, context)) +
          DistinctFailuresText(answers, context.program) +
-         Hints(context, summary.finished, WorthTrying(*only, answers, context));
+         Hints(context, summary.finished,
+               NextCommandsOf(summary, answers, context.program, context.directory));
 }
 
 std::string TypesText(const CampaignSummary& summary) {

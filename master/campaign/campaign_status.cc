@@ -145,8 +145,9 @@ std::vector<Field> FieldsOfCampaign(const MasterView& master, const CampaignProg
        Gauge("gauntlet_generation", "Generations that are complete, summed over the searches.")},
       {"generations", Use::kRead, progress.search.generations,
        Gauge("gauntlet_generations", "Generations that are planned, summed over the searches.")},
-      {"searches", Use::kNobody, progress.searches},
-      {"searches_finished", Use::kNobody, progress.searches_finished},
+      {"searches", Use::kNobody, progress.each.searches},
+      {"searches_finished", Use::kNobody, progress.each.finished},
+      {"searches_in_words", Use::kRead, progress.each.InWords()},
       {"runs_done", Use::kRead, progress.runs_done,
        Counter("gauntlet_runs_stored_total", "Runs whose result is stored, earlier masters included.")},
       {"runs_planned", Use::kNobody, progress.runs_planned,
@@ -252,6 +253,27 @@ std::string Labelled(std::string_view label, std::string_view value) {
 }
 
 }  // namespace
+
+void SearchesProgress::Add(const SearchProgress& one) {
+  ++searches;
+  if (one.finished) ++finished;
+  if (one.finished && searches > 1) return;
+  const bool first = searches - finished <= 1;
+  slowest = first ? one.generation : std::min(slowest, one.generation);
+  fastest = first ? one.generation : std::max(fastest, one.generation);
+  planned = std::max(planned, one.generations);
+}
+
+std::string SearchesProgress::InWords() const {
+  if (searches <= 1) return planned > 1 ? fmt::format("generation {}/{}", slowest, planned) : "";
+  if (finished == searches) return fmt::format("{} searches finished", searches);
+  std::string words = fmt::format("{} of {} searches finished", finished, searches);
+  if (planned <= 1) return words;
+  const std::string range =
+      slowest == fastest ? fmt::format("{}", slowest) : fmt::format("{} to {}", slowest, fastest);
+  return fmt::format("{}, {} in generation {} of {}", words, finished == 0 ? "all" : "the others", range,
+                     planned);
+}
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {

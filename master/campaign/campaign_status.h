@@ -15,11 +15,25 @@
 
 namespace gauntlet {
 
+// How far the searches of a campaign have come, each for itself.
+struct SearchesProgress {
+  std::size_t searches = 0;
+  std::size_t finished = 0;
+  // Of those that have not finished (of an only search in any case).
+  std::uint32_t slowest = 0;  // generation
+  std::uint32_t fastest = 0;
+  std::uint32_t planned = 0;  // generations, the most of any
+
+  void Add(const SearchProgress& one);
+  // "generation 12/50"; "3 of 10 searches finished, the others in generation 12 to 14 of 50"; "" of an only
+  // search without generations.
+  std::string InWords() const;
+};
+
 // How far a campaign that is being served has come. Of several searches, generations and counts are sums.
 struct CampaignProgress {
   SearchProgress search;
-  std::size_t searches = 1;
-  std::size_t searches_finished = 0;
+  SearchesProgress each;
   std::uint64_t runs_done = 0;     // stored, earlier sessions included
   std::uint64_t runs_planned = 0;  // 0 = unknown
   double runs_per_second = 0.0;    // over the last seconds

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "controllers/registry.h"
-#include "master/campaign/campaign_status.h"
 #include "master/campaign/state_digest.h"
 #include "master/campaign/stored_search.h"
 #include "master/campaign/verdict_text.h"
@@ -86,9 +85,14 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
   return encoder.Take();
 }
 
+struct RunsOfCase {
+  std::vector<RunId> ids;
+  std::uint64_t failing = 0;
+};
+
 // Everything that is told of the stored runs of a search.
 Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, SearchSummary& summary,
-               std::map<IndividualId, std::vector<RunId>>& runs_of) {
+               std::map<IndividualId, RunsOfCase>& runs_of) {
   const std::string_view failing = FailingOf(experiment);
   const bool needs_metrics = FailingNeedsMetrics(failing);
   std::map<std::uint32_t, GenerationSummary> generations;
@@ -99,11 +103,15 @@ Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, Se
     generation.generation = run.generation;
     ++generation.runs;
     ++summary.runs_done;
-    runs_of[run.individual].push_back(run.id);
+    RunsOfCase& of_case = runs_of[run.individual];
+    of_case.ids.push_back(run.id);
     if (completed) generation.fitness.Add(run.fitness);
     if (!completed) ++summary.runs_failed;
     if (!completed) AddToRunsWithoutResult(run, summary.runs_without_result);
-    if (completed && Fails(outcome, failing)) ++summary.failing_runs;
+    if (completed && Fails(outcome, failing)) {
+      ++summary.failing_runs;
+      ++of_case.failing;
+    }
     if (!run.total_failure) return Ok{};
     ++summary.total_failures;
     ++generation.total_failures;
@@ -120,6 +128,42 @@ Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, Se
   return Ok{};
 }
 
+// `stored`: nullptr when the store does not know the search.
+Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch* stored,
+                                      ResultStore& store) {
+  const Experiment& experiment = plan.experiment;
+  SearchSummary summary = Described(experiment);
+  std::unique_ptr<SearchAlgorithm> search;
+  {
+    TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
+    summary.distinct_individuals = CountDistinctGenomes(individuals);
+    TRY(search, MakeStoredSearch(plan, std::move(individuals)));
+  }
+  TRY(const SavedProgress saved, RestoreSearch(plan.id, store, *search));
+  summary.settings = plan.settings;
+  summary.progress = search->Progress();
+  summary.archive = search->Archive();
+  summary.statistics = search->Statistics();
+  summary.statistics.insert(summary.statistics.begin(),
+                            {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
+
+  std::map<IndividualId, RunsOfCase> runs_of;
+  TRY(AddRuns(experiment, plan.id, store, summary, runs_of));
+  const std::vector<Individual>& population = search->Population();
+  summary.population.reserve(population.size());
+  for (const Individual& one : population) {
+    RunsOfCase& runs = runs_of[one.id];
+    summary.population.push_back({one.id, one.parents, one.birth_generation, one.fitness,
+                                  one.test_case.obstacles, std::move(runs.ids), one.test_case.name,
+                                  runs.failing});
+    if (std::isfinite(one.fitness)) summary.fitness.Add(one.fitness);
+  }
+  summary.state_hash =
+      StateHash(EncodeExperiment(experiment), saved.results, EncodePopulation(population), saved.state);
+  summary.finished = stored != nullptr && HasFinished(*stored, experiment, *search);
+  return summary;
+}
+
 // What the searches come to together.
 CampaignSummary TotalsOf(const std::vector<SearchPlan>& plans, const std::vector<SearchTally>& searches) {
   CampaignSummary totals;
@@ -128,7 +172,12 @@ CampaignSummary TotalsOf(const std::vector<SearchPlan>& plans, const std::vector
     if (!plan.experiment.plugin.empty()) totals.plugin_controllers.insert(plan.experiment.controller);
   }
   totals.finished = true;
-  for (const SearchTally& one : searches) totals.Add(one);
+  for (const SearchTally& one : searches) {
+    totals.Add(one);
+    SearchProgress progress = one.progress;
+    progress.finished = one.finished;
+    totals.each.Add(progress);
+  }
   totals.progress.finished = totals.finished;
   return totals;
 }
@@ -159,37 +208,6 @@ void SearchTally::Add(const SearchTally& other) {
   finished = finished && other.finished;
 }
 
-Result<SearchSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
-                                ResultStore& store) {
-  SearchSummary summary = Described(experiment);
-  TRY(const SavedProgress saved, RestoreSearch(search_id, store, search));
-  summary.progress = search.Progress();
-  summary.archive = search.Archive();
-  {
-    TRY(const std::vector<Individual> individuals, store.LoadIndividuals(search_id));
-    summary.distinct_individuals = CountDistinctGenomes(individuals);
-  }
-  summary.statistics = search.Statistics();
-  summary.statistics.insert(summary.statistics.begin(),
-                            {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
-
-  std::map<IndividualId, std::vector<RunId>> runs_of;
-  TRY(AddRuns(experiment, search_id, store, summary, runs_of));
-  const std::vector<Individual>& population = search.Population();
-  for (const Individual& one : population) {
-    summary.population.push_back({one.id, one.parents, one.birth_generation, one.fitness,
-                                  one.test_case.obstacles, runs_of[one.id], one.test_case.name});
-    if (std::isfinite(one.fitness)) summary.fitness.Add(one.fitness);
-  }
-  summary.state_hash =
-      StateHash(EncodeExperiment(experiment), saved.results, EncodePopulation(population), saved.state);
-  TRY(const std::vector<StoredSearch> searches, store.LoadSearches());
-  summary.finished = std::ranges::any_of(searches, [&](const StoredSearch& stored) {
-    return stored.id == search_id && HasFinished(stored, experiment, search);
-  });
-  return summary;
-}
-
 Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store) {
   TRY(const std::vector<SearchTotals> totals, store.LoadTotals());
   TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
@@ -217,12 +235,11 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
 }
 
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
   std::vector<SearchSummary> searches;
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const SearchId id = plans[i].id;
-    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i], store, /*restored=*/true));
-    TRY(SearchSummary summary, Summarise(plans[i].experiment, id, *search, store));
-    summary.settings = plans[i].settings;
+  for (const SearchPlan& plan : plans) {
+    const auto known = std::ranges::find(stored, plan.id, &StoredSearch::id);
+    TRY(SearchSummary summary, SummariseSearch(plan, known == stored.end() ? nullptr : &*known, store));
     searches.push_back(std::move(summary));
   }
   CampaignSummary all = TotalsOf(plans, {searches.begin(), searches.end()});

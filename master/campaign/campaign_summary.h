@@ -10,6 +10,7 @@
 #include "base/mean_and_range.h"
 #include "base/result.h"
 #include "controllers/failure_descriptor.h"
+#include "master/campaign/campaign_status.h"
 #include "master/campaign/observed_reproducibility.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
@@ -24,8 +25,9 @@ struct PopulationMember {
   std::uint32_t birth_generation = 0;
   double fitness = 0.0;
   sim::Genome genome;
-  std::vector<RunId> runs;  // of this individual, in logical order
-  std::string name = "";    // of a given case, that of its file; else ""
+  std::vector<RunId> runs;         // of this individual, in logical order
+  std::string name = "";           // of a given case, that of its file; else ""
+  std::uint64_t failing_runs = 0;  // of them, by the scenario's condition
 };
 
 struct GenerationSummary {
@@ -78,6 +80,7 @@ struct SearchSummary : SearchTally {
 // What a campaign came to; the tally is that of all its searches.
 struct CampaignSummary : SearchTally {
   std::string experiment;
+  SearchesProgress each;
   std::vector<SearchSummary> searches;  // in the order of their numbers
   std::uint64_t nondeterministic = 0;   // second results of a spec that differed from the first
   std::uint64_t lone_verdicts = 0;      // runs that were given up on the word of a single worker
@@ -95,11 +98,8 @@ Result<std::uint64_t> CountNondeterministic(ResultStore& store);
 // Runs that were given up on the word of a single worker, because there was no other, under all masters.
 Result<std::uint64_t> CountLoneVerdicts(ResultStore& store);
 
-// Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is
-// brought to the newest saved state. Population, fitness figures and state_hash are those of the last
-// complete generation; runs and failures count everything stored.
-Result<SearchSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
-                                ResultStore& store);
+// What is stored: population, fitness figures and state_hash are those of the last complete generation; runs
+// and failures count everything.
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store);
 // How far all searches together have come and what they have met, without a look at a single run: the fields
 // of a summary that `status` tells.

@@ -9,6 +9,7 @@
 #include "master/dispatch/pool/worker_program.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -45,7 +46,8 @@ std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run, const std::string& scratch) {
   TRY(std::optional<StoredRun> loaded, store.LoadRun(run));
   if (!loaded.has_value())
-    return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", run)};
+    return Error{ErrorKind::kNotFound,
+                 fmt::format("there is no run {} in this campaign", proto::RunText(run))};
   return ReplayRun(std::move(*loaded), scratch);
 }
 
@@ -55,14 +57,15 @@ Result<ReplayReport> ReplayRun(StoredRun stored, const std::string& scratch) {
   const RunId run = report.stored.id;
   Result<sim::RunSpec> spec = proto::DecodeRunSpec(report.stored.spec);
   if (!spec) {
-    report.damage = fmt::format("the stored spec of run {} is damaged: {}", run, spec.error().message);
+    report.damage =
+        fmt::format("the stored spec of run {} is damaged: {}", proto::RunText(run), spec.error().message);
     return report;
   }
   report.spec = std::move(*spec);
   Result<sim::RunResult> stored_result = proto::DecodeStoredResult(report.stored.result);
   if (!stored_result) {
-    report.damage =
-        fmt::format("the stored result of run {} is damaged: {}", run, stored_result.error().message);
+    report.damage = fmt::format("the stored result of run {} is damaged: {}", proto::RunText(run),
+                                stored_result.error().message);
     return report;
   }
   report.stored_result = std::move(*stored_result);

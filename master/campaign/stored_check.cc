@@ -12,6 +12,7 @@
 #include "master/campaign/verdict_text.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "search/search_setup.h"
 #include "search/search_table.h"
 
@@ -25,17 +26,18 @@ Error Damaged(const std::string& what) {
 template <typename Value>
 Status Same(const StoredRun& run, const char* column, const Value& in_row, const Value& in_result) {
   if (in_row == in_result) return Ok{};
-  return Damaged(
-      fmt::format("run {} has {} {} in its row, {} in its result", run.id, column, in_row, in_result));
+  return Damaged(fmt::format("run {} has {} {} in its row, {} in its result", proto::RunText(run.id), column,
+                             in_row, in_result));
 }
 
 Status CheckRecord(const StoredRun& run) {
   if (const std::uint64_t hash = SpecHash(run.spec); hash != run.spec_hash) {
     return Damaged(fmt::format("the spec of run {} has hash {:016x}, when it was stored it had {:016x}",
-                               run.id, hash, run.spec_hash));
+                               proto::RunText(run.id), hash, run.spec_hash));
   }
   const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-  if (!result) return Damaged(fmt::format("the result of run {}: {}", run.id, result.error().message));
+  if (!result)
+    return Damaged(fmt::format("the result of run {}: {}", proto::RunText(run.id), result.error().message));
   return CheckCopies(run, *result);
 }
 
@@ -44,27 +46,28 @@ Status CheckTestCase(const std::map<IndividualId, sim::TestCase>& test_cases, co
   const auto known = test_cases.find(run.individual);
   if (known == test_cases.end()) return Ok{};  // individuals are stored at the end of their generation
   Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
-  if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+  if (!spec)
+    return Damaged(fmt::format("the spec of run {}: {}", proto::RunText(run.id), spec.error().message));
   spec->test_case = known->second;
   if (proto::EncodeRunSpec(*spec) == run.spec) return Ok{};
   return Damaged(fmt::format("the stored test case of individual {} is not the one that run {} simulated",
-                             run.individual, run.id));
+                             run.individual, proto::RunText(run.id)));
 }
 
 }  // namespace
 
 Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
   if (run.hash != result.hash) {
-    return Damaged(fmt::format("run {} has hash {:016x} in its row, {:016x} in its result", run.id, run.hash,
-                               result.hash));
+    return Damaged(fmt::format("run {} has hash {:016x} in its row, {:016x} in its result",
+                               proto::RunText(run.id), run.hash, result.hash));
   }
   if (run.verdict != result.verdict) {
-    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", run.id,
+    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", proto::RunText(run.id),
                                static_cast<int>(run.verdict), NameOf(result.verdict)));
   }
   if (std::bit_cast<std::uint64_t>(run.fitness) != std::bit_cast<std::uint64_t>(result.fitness)) {
-    return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,
-                               result.fitness));
+    return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", proto::RunText(run.id),
+                               run.fitness, result.fitness));
   }
   TRY(Same(run, "message", run.message, result.message));
   TRY(Same(run, "total_failure", run.total_failure, result.failure.total));
@@ -76,14 +79,16 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
   if (RowOf(experiment).seeds_of_cases) {
     if (run.spec.empty()) return Ok{};  // rows alone are looked at
     Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
-    if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+    if (!spec)
+      return Damaged(fmt::format("the spec of run {}: {}", proto::RunText(run.id), spec.error().message));
     asked.test_case = std::move(spec->test_case);
   }
   const std::uint64_t seed = RunSeed(experiment, asked, run.replicate);
   if (seed == run.seed) return Ok{};
   return Damaged(fmt::format(
       "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",
-      run.id, run.seed, run.replicate, run.evaluation, run.individual, seed, experiment.seed));
+      proto::RunText(run.id), run.seed, run.replicate, run.evaluation, run.individual, seed,
+      experiment.seed));
 }
 
 Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
@@ -107,7 +112,7 @@ Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
   }
   const auto missing = [&](RunId run) {
     return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
-                               run, state->generation, last_seen));
+                               proto::RunText(run), state->generation, proto::RunText(last_seen)));
   };
   RunId expected = RunIdOf(search, 1);
   const auto check = [&](const StoredRun& run) -> Status {
@@ -125,7 +130,7 @@ Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
   if (finished_with > last_seen) {
     return Damaged(fmt::format(
         "the search has finished with run {}, but the newest state has seen only the runs up to {}",
-        finished_with, last_seen));
+        proto::RunText(finished_with), proto::RunText(last_seen)));
   }
   return Ok{};
 }

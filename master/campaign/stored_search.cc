@@ -15,6 +15,14 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
   const bool handed = row.given_cases() || row.varies_settings;
   if (!handed && (row.individuals != Individuals::kCases || !restored)) return MakeSearch(plan.experiment);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
+  return MakeStoredSearch(plan, std::move(individuals));
+}
+
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan,
+                                                          std::vector<Individual> individuals) {
+  const SearchRow& row = RowOf(plan.experiment);
+  const bool handed = row.given_cases() || row.varies_settings;
+  if (!handed && row.individuals != Individuals::kCases) return MakeSearch(plan.experiment);
   if (row.given_cases() && individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
                  "the campaign was stopped before its cases were stored: evaluate them anew"};

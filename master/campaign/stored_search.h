@@ -17,6 +17,9 @@ namespace gauntlet {
 // store as well, which is several times as fast as to draw them again.
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store,
                                                           bool restored = false);
+// The same, to be restored, of a search whose individuals are known.
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan,
+                                                          std::vector<Individual> individuals);
 
 // Whether the search has come to the end of the length that its experiment gives it now: one that was made
 // longer since it ended has not. Takes no look at its runs.

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "base/printable.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -36,7 +37,7 @@ void DispatchLog::Failed(proto::RunId run, std::string kind, const std::string& 
   Failures& failures = failures_[run];
   failures.kind = std::move(kind);
   if (++failures.alike[how] <= kFailuresTold)
-    Report(failures.kind, fmt::format("run {} {}{}", run, how, where));
+    Report(failures.kind, fmt::format("run {} {}{}", proto::RunText(run), how, where));
 }
 
 void DispatchLog::Ended(proto::RunId run) {
@@ -44,7 +45,7 @@ void DispatchLog::Ended(proto::RunId run) {
   if (ended.empty()) return;
   for (const auto& [how, count] : ended.mapped().alike) {
     if (count > kFailuresTold)
-      Report(ended.mapped().kind, fmt::format("run {} {}, {} times in all", run, how, count));
+      Report(ended.mapped().kind, fmt::format("run {} {}, {} times in all", proto::RunText(run), how, count));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -28,14 +29,9 @@ constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
 
-// " (run 3, 4, 5, ...)"; "" for none.
+// " (run 3 to 5)"; "" for none.
 std::string ListRuns(const std::vector<RunId>& runs) {
-  constexpr std::size_t kShownRuns = 10;
-  if (runs.empty()) return "";
-  const std::size_t shown = std::min(kShownRuns, runs.size());
-  return fmt::format(" (run {}{})",
-                     fmt::join(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-                     shown < runs.size() ? ", ..." : "");
+  return runs.empty() ? "" : fmt::format(" (run {})", proto::RunRanges(runs));
 }
 
 Fence FirstFence(std::uint64_t epoch) {
@@ -286,7 +282,7 @@ void RemoteBackend::OnUnreadable(InstanceId worker, const proto::LeaseResult& me
   const std::string& label = workers_.LabelOf(worker);
   log_.Reject("result " + label,
               fmt::format("worker {} gave a result of run {} (lease {:x}) that cannot be read ({})", label,
-                          message.run_id, message.fence, Shorten(why)));
+                          proto::RunText(message.run_id), message.fence, Shorten(why)));
 }
 
 void RemoteBackend::OnFailure(InstanceId worker, const proto::LeaseResult& message,
@@ -344,10 +340,11 @@ void RemoteBackend::Tell(const SchedulerOrders& orders) {
                             workers_.LabelOf(order.worker), InWords(order.record)));
   }
   for (const ResultMismatch& mismatch : orders.mismatches) {
-    log_.Report(event::kNondeterministic,
-                fmt::format("run {} ended differently on two workers: {} gave {:016x}, {} gave {:016x}",
-                            mismatch.run, workers_.LabelOf(mismatch.first_worker), mismatch.first_hash,
-                            workers_.LabelOf(mismatch.second_worker), mismatch.second_hash));
+    log_.Report(
+        event::kNondeterministic,
+        fmt::format("run {} ended differently on two workers: {} gave {:016x}, {} gave {:016x}",
+                    proto::RunText(mismatch.run), workers_.LabelOf(mismatch.first_worker),
+                    mismatch.first_hash, workers_.LabelOf(mismatch.second_worker), mismatch.second_hash));
   }
   if (const auto& news = orders.reproducibility) {
     log_.Report(news->state == Reproducible::kYes ? event::kReproducible : event::kNotReproducible,
@@ -367,13 +364,13 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
     log_.Report(event::kRunGivenUp,
                 fmt::format("run {} {} on worker {}: its first ending counts, because it is not known to be "
                             "reproducible",
-                            order.run, run.result.message, run.worker));
+                            proto::RunText(order.run), run.result.message, run.worker));
     return;
   }
   const bool alone = order.alone();
   log_.Report(alone ? event::kRunGivenUpAlone : event::kRunGivenUp,
-              fmt::format("run {} {} in {} of {} attempts, {}", order.run, run.result.message, order.alike,
-                          order.attempts,
+              fmt::format("run {} {} in {} of {} attempts, {}", proto::RunText(order.run), run.result.message,
+                          order.alike, order.attempts,
                           alone ? fmt::format("all on worker {}: there was no other to ask", run.worker)
                                 : fmt::format("on {} workers", order.workers)));
 }

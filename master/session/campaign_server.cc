@@ -24,6 +24,7 @@
 #include "master/session/metrics_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/access_file.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -279,7 +280,7 @@ void CampaignServer::KeepBundle(const Experiment& experiment, const StoredRun& r
   if (!LeavesBundle(finished.result.verdict)) return;
   const BundleContext context{campaign_.directory.path(), identity_, dispatch_};
   if (const Status written = WriteBundle(context, experiment, run, finished); !written)
-    spdlog::warn("no bundle for run {}: {}", run.id, written.error().message);
+    spdlog::warn("no bundle for run {}: {}", proto::RunText(run.id), written.error().message);
 }
 
 void CampaignServer::NoteEvent(const std::string& kind, const std::string& text) {

@@ -22,6 +22,7 @@
 #include "master/store/event_kinds.h"
 #include "master/store/run_numbers.h"
 #include "proto/json_text.h"
+#include "proto/run_text.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 
@@ -233,7 +234,7 @@ class Campaigns final : public CampaignService {
     const std::size_t search = SearchOf(run) - 1;
     if (search >= plans.size())
       return Error{ErrorKind::kCorrupt,
-                   fmt::format("run {} is of a search that the campaign does not have", run)};
+                   fmt::format("run {} is of a search that the campaign does not have", proto::RunText(run))};
     const Experiment& experiment = plans[search].experiment;
     if (report.damage.empty()) {
       TRY(CheckSeed(experiment, report.stored));
@@ -285,6 +286,7 @@ class Campaigns final : public CampaignService {
                      {"master", nullptr},
                      {"generation", summary.progress.generation},
                      {"generations", summary.progress.generations},
+                     {"searches_in_words", summary.each.InWords()},
                      {"runs_done", summary.runs_done},
                      {"total_failures", summary.total_failures},
                      {"runs_failed", summary.runs_failed},

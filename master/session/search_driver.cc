@@ -9,6 +9,7 @@
 #include "master/campaign/observed_reproducibility.h"
 #include "master/campaign/stored_search.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -72,7 +73,7 @@ Status SearchDriver::Ask() {
               fmt::format(
                   "run {} is stored with another spec than the search asks for: the campaign was made by "
                   "another version, or its files were changed",
-                  run.id)};
+                  proto::RunText(run.id))};
         }
         TRY(static_cast<RunOutcome&>(stored->second),
             OutcomeOf(stored->second, parts_.search.WantsMetrics(), parts_.search.WantsWays()));

@@ -71,7 +71,6 @@ std::uint64_t SearchLoop::runs_done() const {
 
 CampaignProgress SearchLoop::Progress() {
   CampaignProgress progress;
-  progress.searches = parts_.searches.size();
   progress.search.finished = true;
   progress.best_fitness = std::numeric_limits<double>::quiet_NaN();
   double sum = 0.0;
@@ -79,7 +78,7 @@ CampaignProgress SearchLoop::Progress() {
   for (const SearchDriver* search : parts_.searches) {
     const SearchProgress one = search->Progress();
     Add(one, progress.search);
-    if (one.finished) ++progress.searches_finished;
+    progress.each.Add(one);
     progress.runs_planned += search->runs_planned();
     progress.total_failures += search->totals().total_failures;
     progress.runs_failed += search->totals().runs_failed;

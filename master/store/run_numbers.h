@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "master/store/result_store.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 
@@ -13,7 +14,7 @@ namespace gauntlet {
 // its number is.
 inline constexpr SearchId kOnlySearch = 1;
 
-inline constexpr int kSequenceBits = 40;
+using proto::kSequenceBits;
 
 // The id of run number `sequence` (1, 2, ... below 2^40) of a search: searches do not share numbers, so ids
 // do not depend on which search was faster.

@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "master/store/checksums.h"
 #include "master/store/run_numbers.h"
+#include "proto/run_text.h"
 #include "sim/arena/genome.h"
 #include "sim/run_result.h"
 
@@ -257,7 +258,8 @@ Status SqliteTables::Insert(const StoredRun& run) {
   }
   if (inserted) inserted = insert_record_.Run(run.id, Blob{spec}, Blob{result});
   if (!inserted)
-    return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
+    return Error{inserted.error().kind,
+                 fmt::format("run {}: {}", proto::RunText(run.id), inserted.error().message)};
   totals_.Of(run.search).Count(run);
   return Ok{};
 }
@@ -272,7 +274,8 @@ Status SqliteTables::Insert(const SavedState& state) {
   }
   TRY(std::optional<SavedState> stored, LoadState(state.search, state.last_run));
   if (stored.has_value() && ChecksumOf(*stored) == ChecksumOf(state)) return Ok{};
-  return Conflict(fmt::format("the state of search {} after run {}", state.search, state.last_run));
+  return Conflict(
+      fmt::format("the state of search {} after run {}", state.search, proto::RunText(state.last_run)));
 }
 
 Status SqliteTables::Insert(const StoredEvent& event) {
@@ -372,15 +375,17 @@ Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) 
   run.verdict = static_cast<sim::Verdict>(verdict);
   run.fitness = std::bit_cast<double>(fitness_bits);
   if (checksum != ChecksumOf(run, record_hash))
-    return DamagedDatabase(fmt::format("the row of run {} was changed: its checksum differs", run.id));
+    return DamagedDatabase(
+        fmt::format("the row of run {} was changed: its checksum differs", proto::RunText(run.id)));
   if (!whole) return run;
   if (record_hash != RowChecksum(spec, result))
-    return DamagedDatabase(
-        fmt::format("the spec or the result of run {} was changed: their checksum differs", run.id));
+    return DamagedDatabase(fmt::format("the spec or the result of run {} was changed: their checksum differs",
+                                       proto::RunText(run.id)));
   for (const auto& [packing, packed, into] :
        {std::tuple(&specs_, &spec, &run.spec), std::tuple(&results_, &result, &run.result)}) {
     Result<std::string> bytes = packing->Unpack(*packed);
-    if (!bytes) return DamagedDatabase(fmt::format("run {}: {}", run.id, bytes.error().message));
+    if (!bytes)
+      return DamagedDatabase(fmt::format("run {}: {}", proto::RunText(run.id), bytes.error().message));
     *into = *std::move(bytes);
   }
   return run;

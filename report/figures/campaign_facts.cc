@@ -17,6 +17,7 @@
 #include "master/campaign/stored_campaign.h"
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 #include "study/questions/question_table.h"
@@ -42,7 +43,9 @@ Result<RunFacts> FactsOf(const StoredRun& run,
   facts.descriptors.assign(descriptors.size(), kNotMeasured);
   if (!facts.completed || descriptors.empty()) return facts;
   const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-  if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
+  if (!result)
+    return Error{result.error().kind,
+                 fmt::format("run {}: {}", proto::RunText(run.id), result.error().message)};
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const auto metric =
         std::ranges::find(result->metrics, descriptors[i]->name, &std::pair<std::string, double>::first);
@@ -206,7 +209,7 @@ Result<std::vector<StoredRun>> ReadRuns(const std::string& dir, const std::vecto
   for (const RunId id : ids) {
     TRY(auto run, campaign.store->LoadRun(id));
     if (!run.has_value())
-      return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
+      return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", proto::RunText(id), dir)};
     runs.push_back(std::move(*run));
   }
   return runs;

@@ -8,6 +8,7 @@
 #include "analysis/figures/run/swarm_motion.h"
 #include "analysis/figures/run/trajectory_csv.h"
 #include "analysis/tables/table.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -77,7 +78,7 @@ std::vector<NamedFigure> FiguresOf(const std::vector<SearchCourse>& courses,
 
 std::vector<NamedFigure> FiguresOf(const ShownRun& shown) {
   const analysis::RunFigure& figure = shown.figure;
-  const RunId id = shown.report.stored.id;
+  const std::string id = proto::RunText(shown.report.stored.id);
   if (figure.result.trajectory.empty()) return {};
   std::vector<NamedFigure> figures = {
       {fmt::format("run-{}", id), fmt::format("Run {}: every robot's trajectory", id),

@@ -23,8 +23,8 @@ struct NamedFigure {
 
 // "progress" (with several kinds of searches "progress-1", "progress-2", ...), and the maps by their names.
 std::vector<NamedFigure> FiguresOf(const std::vector<SearchCourse>& courses, const std::vector<RunMap>& maps);
-// "run-981", "motion-981", and "states-981" where robots say what they do. Without a picture of a run that
-// does not read back: none. `shown` must outlive them.
+// "run-981" (or "run-2:981"), "motion-981", and "states-981" where robots say what they do. Without a picture
+// of a run that does not read back: none. `shown` must outlive them.
 std::vector<NamedFigure> FiguresOf(const ShownRun& shown);
 
 }  // namespace gauntlet

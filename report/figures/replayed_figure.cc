@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "controllers/registry.h"
+#include "proto/run_text.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet {
@@ -19,7 +20,7 @@ std::string MetricText(const controllers::MetricInfo* info, double value) {
 analysis::RunFigure FigureOf(const std::string& experiment_name, const ReplayReport& report) {
   analysis::RunFigure figure;
   figure.experiment = experiment_name;
-  figure.run = fmt::format("run {}", report.stored.id);
+  figure.run = fmt::format("run {}", proto::RunText(report.stored.id));
   figure.spec = report.spec;
   figure.result = report.replayed;
   const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(figure.spec);

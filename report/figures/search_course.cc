@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "search/experiment/experiment_file.h"
+#include "report/tables/conditions.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -46,25 +46,6 @@ std::vector<CourseBlock> BlocksOf(const std::vector<const RunFacts*>& runs) {
   return blocks;
 }
 
-// The same for experiments that differ in their seed only.
-std::string WithoutSeed(Experiment experiment) {
-  experiment.seed = 0;
-  return WriteExperiment(experiment, {}, BuiltInCatalogue());
-}
-
-// "search.population=20, seed 3" without the seed.
-std::string NameOfCourse(const std::string& settings) {
-  std::string name;
-  std::size_t begin = 0;
-  while (begin < settings.size()) {
-    const std::size_t end = std::min(settings.find(", ", begin), settings.size());
-    const std::string part = settings.substr(begin, end - begin);
-    if (!part.starts_with("seed ")) name += (name.empty() ? "" : ", ") + part;
-    begin = end + 2;
-  }
-  return name;
-}
-
 // The mean over the repeats, with a band when there are several.
 analysis::FigureLine LineOf(const SearchCourse& course, const std::string& name,
                             double (*value)(const CourseBlock&)) {
@@ -98,8 +79,10 @@ std::vector<SearchCourse> CoursesOf(const CampaignFacts& facts) {
   std::map<std::string, std::size_t> places;
   for (const auto& [search, some] : runs) {
     const SearchPlan& plan = facts.plans.at(search - 1);
-    const auto [place, is_new] = places.try_emplace(WithoutSeed(plan.experiment), courses.size());
-    if (is_new) courses.push_back({NameOfCourse(plan.settings), {}});
+    if (!RowOf(plan.experiment).Breeds()) continue;
+    const std::string name = ConditionOf(plan.settings);
+    const auto [place, is_new] = places.try_emplace(name, courses.size());
+    if (is_new) courses.push_back({name, {}});
     courses[place->second].repeats.push_back(BlocksOf(some));
   }
   return courses;

@@ -1,4 +1,4 @@
-// How searches went: fitness and failures over the runs that they spent.
+// How searches that learn went: fitness and failures over the runs that they spent.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct SearchCourse {
   std::vector<std::vector<CourseBlock>> repeats;  // [search][block]
 };
 
-// In the order of the searches; those without a run are left out.
+// In the order of the searches; those without a run, and those that do not breed, are left out.
 std::vector<SearchCourse> CoursesOf(const CampaignFacts& facts);
 
 // Mean over the repeats, with a band from the lowest to the highest of them when there are several.

@@ -72,9 +72,14 @@ std::string SetsCsv(const std::string& metric, const std::vector<analysis::Compa
   return table.ToCsv();
 }
 
+std::string TitleOf(const SetComparison& comparison) {
+  const std::vector<RunSet>& sets = comparison.sets;
+  return sets.size() == 2 ? fmt::format("{} against {}", sets[0].values.name, sets[1].values.name)
+                          : fmt::format("{} and {} other sets of runs", sets[0].values.name, sets.size() - 1);
+}
+
 NamedFigure FigureOf(const SetComparison& comparison) {
-  const std::string title =
-      fmt::format("{}: fitness of {} sets of runs", comparison.scenario, comparison.sets.size());
+  const std::string title = TitleOf(comparison);
   std::vector<analysis::ComparedSet> values;
   for (const RunSet& set : comparison.sets) values.push_back(set.values);
   return {"comparison", title, std::string(kReadingOfBoxes),

@@ -42,6 +42,8 @@ inline constexpr std::string_view kReadingOfBoxes =
 // Its data: a row for each value. Values of one unit (an evolution, a case) are relatives.
 std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets);
 
+// What is compared: "campaigns/a against campaigns/b".
+std::string TitleOf(const SetComparison& comparison);
 // "comparison": a box for each of its sets.
 NamedFigure FigureOf(const SetComparison& comparison);
 

@@ -13,6 +13,7 @@
 
 #include "master/directory/campaign_ownership.h"
 #include "report/figures/replayed_figure.h"
+#include "report/tables/summary_tables.h"
 
 namespace gauntlet {
 namespace {
@@ -98,6 +99,9 @@ std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunM
   for (const DistinctFailure* failure : distinct.All()) add(failure->cases.front()->run);
   if (const Confirmation* toughest = ToughestOf(facts.answers.confirmations)) add(toughest->run);
   for (const SmallestLayout& one : facts.answers.smallest_layouts) add(one.run);
+  if (const SearchSummary* only = facts.summary.OnlySearch()) {
+    for (const PopulationMember* one : SmallestFirst(*only)) add(one->runs.empty() ? 0 : one->runs.front());
+  }
   for (const RunMap& map : maps) {
     for (const std::vector<RunId>& row : map.toughest) {
       for (const RunId run : row) add(run);

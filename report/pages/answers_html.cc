@@ -10,8 +10,10 @@
 #include "analysis/tables/section.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
+#include "proto/run_text.h"
 #include "report/pages/html_text.h"
 #include "report/tables/distinct_failures.h"
+#include "report/tables/next_commands.h"
 #include "search/given/layout_question.h"
 
 namespace gauntlet {
@@ -40,8 +42,8 @@ std::string DrawSmallest(const SmallestLayout& one) {
         .heading = heading, .outcome = outcome, .obstacles = obstacles, .kept = AllOf(obstacles).kept};
   };
   analysis::LayoutStrip strip{
-      .title = fmt::format("run {}: from {} obstacles to {}", one.run, lineage.parent.obstacles.size(),
-                           one.document.test_case.obstacles.size()),
+      .title = fmt::format("run {}: from {} obstacles to {}", proto::RunText(one.run),
+                           lineage.parent.obstacles.size(), one.document.test_case.obstacles.size()),
       .original = lineage.parent,
       .pictures = {},
       .places = {}};
@@ -74,10 +76,9 @@ std::string TypicalRunsHtml(const CampaignPages& pages, std::size_t number) {
   for (std::size_t i = 0; i < std::min(failures.size(), pages.typical.size()); ++i) {
     if (pages.typical[i].figure.result.trajectory.empty()) continue;
     const Confirmation& toughest = *failures[i]->cases.front();
-    html += fmt::format(
-        "<li><img loading=\"lazy\" alt=\"\" width=\"220\" height=\"220\" src=\"{}\">{}: {}</li>\n",
-        DataUri(analysis::DrawThumbnail(pages.typical[i].figure, kTypicalPixels)), Html(failures[i]->name),
-        CaseLink(pages, number, toughest.name, toughest.run));
+    html += fmt::format("<li><img alt=\"\" width=\"220\" height=\"220\" src=\"{}\">{}: {}</li>\n",
+                        DataUri(analysis::DrawThumbnail(pages.typical[i].figure, kTypicalPixels)),
+                        Html(failures[i]->name), CaseLink(pages, number, toughest.name, toughest.run));
   }
   return html.empty()
              ? ""
@@ -93,8 +94,7 @@ std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number)
   if (confirmations.empty()) {
     if (facts.summary.total_failures == 0 && facts.summary.failing_runs == 0) return "";
     return ToHtml({.title = "Distinct failures",
-                   .commands = {{fmt::format("gauntlet confirm {} --all-failing --replicates 20",
-                                             PastedPath(facts.directory)),
+                   .commands = {{ConfirmCommand(facts.summary, "gauntlet", facts.directory),
                                  "How many different failures these are, and whether they happen again with "
                                  "fresh seeds, is not known yet. This finds it out"}}});
   }
@@ -114,11 +114,11 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
       "the "
       "swarm in the same way; what was taken away stands faintly.</p>\n<ul class=\"thumbs pairs\">\n";
   for (const SmallestLayout& one : std::span(layouts).first(std::min(kMostMinimised, layouts.size()))) {
-    html += fmt::format("<li><img loading=\"lazy\" alt=\"\" src=\"{}\">{}: {} of {} are left</li>\n",
-                        DataUri(DrawSmallest(one)),
-                        CaseLink(pages, number, fmt::format("run {}", one.run), one.run),
-                        one.document.test_case.obstacles.size(),
-                        Counted(one.document.lineage->parent.obstacles.size(), "obstacle"));
+    html +=
+        fmt::format("<li><img alt=\"\" src=\"{}\">{}: {} of {} are left</li>\n", DataUri(DrawSmallest(one)),
+                    CaseLink(pages, number, fmt::format("run {}", proto::RunText(one.run)), one.run),
+                    one.document.test_case.obstacles.size(),
+                    Counted(one.document.lineage->parent.obstacles.size(), "obstacle"));
   }
   return html + "</ul>\n";
 }
@@ -138,7 +138,7 @@ std::string SmallestLayoutsHtml(const CampaignPages& pages, std::size_t number) 
         DataUri(analysis::DrawThumbnail(run->second.figure, kTypicalPixels)),
         Counted(layout->document.test_case.obstacles.size(), "obstacle"),
         OutOf(layout->document.lineage->verified), Html(what),
-        CaseLink(pages, number, fmt::format("run {}", layout->run), layout->run));
+        CaseLink(pages, number, fmt::format("run {}", proto::RunText(layout->run)), layout->run));
   }
   if (html.empty()) return "";
   return fmt::format(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -39,10 +40,16 @@ Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown
 
 // What was tested, and what came of it, in two or three sentences; a text.
 std::string VerdictOf(const CampaignPages& pages);
+// Its name and its directory: begins every page about it.
+std::string CampaignHeading(const CampaignFacts& facts);
 std::string OverviewHtml(const CampaignPages& pages, std::size_t number);
-// What became of the test cases, the `most` toughest, which run has a page, and by which keys scripts know
-// it.
-Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most);
+// What became of the test cases, the `most` toughest, where a run's page is ("" or no function: nowhere), and
+// by which keys scripts know it.
+Table CaseTable(const CampaignFacts& facts, std::size_t most,
+                const std::function<std::string(RunId)>& link = nullptr);
+// Pictures of the toughest cases, each with its run, of a campaign of which nothing smaller or more typical
+// is known; else "".
+std::string ToughestRunsHtml(const CampaignPages& pages, std::size_t number);
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
 // A page for each run that is shown.
 std::string CasesHtml(const CampaignPages& pages, std::size_t number);

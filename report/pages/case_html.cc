@@ -6,6 +6,7 @@
 #include "analysis/tables/section.h"
 #include "base/shell_quoted.h"
 #include "master/campaign/verdict_text.h"
+#include "proto/run_text.h"
 #include "report/figures/campaign_figures.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
@@ -52,18 +53,20 @@ std::string RunFactsHtml(const CampaignFacts& facts, const ShownRun& shown) {
   return table.ToHtml();
 }
 
-std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
+std::string CommandsHtml(const CampaignFacts& facts, RunId run) {
+  const std::string id = proto::RunText(run);
+  const std::string file = proto::RunFileName(run);
   const std::string dir = PastedPath(facts.directory);
   return ToHtml(
       {.title = "Commands",
        .commands = {
-           {fmt::format("gauntlet replay {} {} --svg run-{}.svg", dir, id, id), "See it again, bit for bit"},
+           {fmt::format("gauntlet replay {} {} --svg {}.svg", dir, id, file), "See it again, bit for bit"},
            {fmt::format("gauntlet confirm {} {}", dir, id),
             "Does it fail with fresh seeds too, and how often?"},
            {fmt::format("gauntlet minimise {} {}", dir, id), "Which of its obstacles does it take?"},
            {fmt::format("gauntlet blame {} {}", dir, id), "How much does each of them do?"},
-           {fmt::format("gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir,
-                        id, id),
+           {fmt::format("gauntlet export {} --format csv --what trajectories --run {} --out {}.csv", dir, id,
+                        file),
             "Its trajectories as a table"}}});
 }
 
@@ -75,7 +78,7 @@ std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const Shown
   std::string html = fmt::format(
       "<section class=\"page case\" id=\"{}\">\n<h2>Run {}</h2>\n<p class=\"soft\">{} &middot; <a "
       "href=\"#failures\">all failures</a></p>\n",
-      page_id, id, Html(facts.directory));
+      page_id, proto::RunText(id), Html(facts.directory));
   if (!shown.trouble.empty())
     html += fmt::format("<ul class=\"notes\"><li>{}</li></ul>\n", Html(shown.trouble));
   if (shown.figure.result.trajectory.empty()) return html + CommandsHtml(facts, id) + "</section>\n";

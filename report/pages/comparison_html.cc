@@ -60,7 +60,7 @@ std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
         "two-sided; where runs are relatives it is of whole units, where both sets are of the same cases of "
         "the "
         "pairs; the last column makes up for the number of tests.</p>\n{}",
-        Html(one.scenario), BoxesHtml(one), SetsTable(one), PairsTable(one));
+        Html(TitleOf(one)), BoxesHtml(one), SetsTable(one), PairsTable(one));
     for (const ComparedPair& pair : one.pairs) {
       html += fmt::format("<p>{}</p>\n", Html(pair.held.words));
       for (const std::string& difference : pair.differences)

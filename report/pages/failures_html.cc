@@ -7,6 +7,8 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "proto/run_text.h"
+#include "report/figures/archive_figure.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
@@ -21,8 +23,8 @@ std::string CellHtml(const CampaignPages& pages, std::size_t number, const analy
                      RunId toughest, std::uint64_t largest) {
   if (cell.count == 0) return fmt::format("<td class=\"none\" title=\"{}: none\"></td>", Html(cell.meaning));
   const analysis::HeatColors colors = analysis::HeatColorsOf(cell.count, largest);
-  const std::string title = Html(
-      fmt::format("{}: {} runs; the toughest is run {}", cell.meaning, FormatCount(cell.count), toughest));
+  const std::string title = Html(fmt::format("{}: {} runs; the toughest is run {}", cell.meaning,
+                                             FormatCount(cell.count), proto::RunText(toughest)));
   std::string html = FormatCount(cell.count);
   if (const std::string link = pages.LinkTo(number, toughest); !link.empty())
     html = fmt::format("<a href=\"{}\" aria-label=\"{}\">{}</a>", link, title, html);
@@ -49,29 +51,35 @@ std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap
   return html + "</tbody></table></div>\n" + ForAPaperHtml(map.name, pages.facts.directory);
 }
 
-std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
-  std::string html =
-      "<h3>What it looks like</h3>\n<p>The arena of each run from above, with every robot's trajectory. Blue "
-      "ones are "
-      "of robots that did well, red ones of those that were lost, green is a guide; dots are where they "
-      "ended. "
-      "A click leads to the run.</p>\n<ul class=\"thumbs\">\n";
+// A list of the first runs that are shown, each with a link to its page; "" where none can be drawn.
+std::string ThumbnailsOf(const CampaignPages& pages, std::size_t number, std::size_t most) {
+  std::string html;
   std::size_t drawn = 0;
   for (const ShownRun& one : pages.shown) {
     if (one.figure.result.trajectory.empty()) continue;
-    ++drawn;
+    if (drawn++ == most) break;
     const RunId id = one.report.stored.id;
-    const std::string outcome = Html(analysis::DescribeOutcome(one.figure));
     html += fmt::format(
-        "<li><a href=\"#{}\"><img loading=\"lazy\" alt=\"\" width=\"220\" height=\"220\" "
-        "src=\"{}\">Run {}: {}</a></li>\n",
-        IdOfRun(number, id), DataUri(analysis::DrawThumbnail(one.figure, kThumbnailPixels)), id, outcome);
+        "<li><a href=\"#{}\"><img alt=\"\" width=\"220\" height=\"220\" src=\"{}\">Run {}: {}</a></li>\n",
+        IdOfRun(number, id), DataUri(analysis::DrawThumbnail(one.figure, kThumbnailPixels)),
+        proto::RunText(id), Html(analysis::DescribeOutcome(one.figure)));
   }
-  return drawn == 0 ? "" : html + "</ul>\n";
+  return html.empty() ? "" : fmt::format("<ul class=\"thumbs\">\n{}</ul>\n", html);
+}
+
+std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
+  const std::string thumbnails = ThumbnailsOf(pages, number, pages.shown.size());
+  if (thumbnails.empty()) return "";
+  return fmt::format(
+      "<h3>What it looks like</h3>\n<p>The arena of each run from above, with every robot's trajectory. Blue "
+      "ones are of robots that did well, red ones of those that were lost, green is a guide; dots are where "
+      "they ended. A click leads to the run.</p>\n{}",
+      thumbnails);
 }
 
 std::string AllCasesHtml(const CampaignPages& pages, std::size_t number) {
-  const Table table = CaseTable(pages, number, kMostCases);
+  const Table table =
+      CaseTable(pages.facts, kMostCases, [&](RunId run) { return pages.LinkTo(number, run); });
   return fmt::format(
       "<h3>Test cases</h3>\n<p>A row for each test case, the toughest first: its number, how its runs ended, "
       "and "
@@ -87,8 +95,7 @@ std::string IdOfRun(std::size_t number, RunId run) {
   return fmt::format("run-{}-{}", number, run);
 }
 
-Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most) {
-  const CampaignFacts& facts = pages.facts;
+Table CaseTable(const CampaignFacts& facts, std::size_t most, const std::function<std::string(RunId)>& link) {
   const Experiment& experiment = facts.plans.front().experiment;
   const controllers::FailureTypes& types = controllers::DeclaredScenario(experiment).failure_types;
   Table table({{">case", "case"},
@@ -109,16 +116,31 @@ Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most
         {one.individual, one.search, TextCell(one.name), FitnessCell(mean), CountCell(one.runs),
          CountCell(one.total_failures), TextCell(type == nullptr ? "" : type->name),
          TextCell(confirmed ? OutOfCell(confirmed->tally.failures, confirmed->tally.runs()).text : ""),
-         one.toughest == 0 ? Cell() : LinkCell(one.toughest, pages.LinkTo(number, one.toughest))});
+         one.toughest == 0
+             ? Cell()
+             : LinkCell(Cell(proto::RunText(one.toughest), one.toughest), link ? link(one.toughest) : "")});
   }
   return table;
 }
 
+std::string ToughestRunsHtml(const CampaignPages& pages, std::size_t number) {
+  constexpr std::size_t kMostToughest = 4;
+  const bool better = !pages.typical.empty() || !pages.smallest.empty();
+  if (better || pages.facts.summary.failing_runs == 0) return "";
+  const std::string thumbnails = ThumbnailsOf(pages, number, kMostToughest);
+  if (thumbnails.empty()) return "";
+  return fmt::format(
+      "<h3>What a failure looks like</h3>\n<p>The arena from above; trajectories of robots that did well are "
+      "blue, of those that were lost red. <a href=\"#failures\">All failures</a></p>\n{}",
+      thumbnails);
+}
+
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
-  std::string html = fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}</p>\n",
-                                 Html(pages.facts.summary.experiment), Html(pages.facts.directory));
+  std::string html = CampaignHeading(pages.facts);
   if (pages.facts.cases.empty()) return html + "<p>There is no run yet.</p>\n";
   if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
+  for (const NamedFigure& figure : ArchiveFigures(pages.facts))
+    html += FigureHtml(figure, pages.facts.directory);
   html += DistinctFailuresHtml(pages, number) + MinimisedCasesHtml(pages, number);
   for (const RunMap& map : pages.maps) html += MapHtml(pages, number, map);
   return html + ThumbnailsHtml(pages, number) + AllCasesHtml(pages, number);

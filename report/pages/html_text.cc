@@ -1,5 +1,7 @@
 #include "report/pages/html_text.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -22,9 +24,11 @@ std::string JsonInHtml(const nlohmann::ordered_json& value) {
 
 std::string ForAPaperHtml(const std::string& figure, const std::string& directory,
                           const std::string& options) {
+  std::string file = figure;
+  std::ranges::replace(file, ':', '-');
   return fmt::format("<details><summary>For a paper: as SVG, its data as CSV</summary>{}</details>\n",
-                     CommandHtml(fmt::format("gauntlet figure {0} {1}{2} -o {1}.svg --csv {1}.csv",
-                                             PastedPath(directory), figure, options)));
+                     CommandHtml(fmt::format("gauntlet figure {0} {1}{2} -o {3}.svg --csv {3}.csv",
+                                             PastedPath(directory), figure, options, file)));
 }
 
 std::string FigureHtml(const NamedFigure& figure, const std::string& directory, const std::string& options) {

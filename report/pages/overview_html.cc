@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/chrono.h>
@@ -9,13 +10,15 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
-#include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
+#include "report/figures/condition_figure.h"
 #include "report/figures/fit_figure.h"
 #include "report/figures/margin_figure.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
+#include "report/tables/conditions.h"
+#include "report/tables/next_commands.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 #include "study/fits/fit_text.h"
@@ -56,7 +59,11 @@ std::string TestedHtml(const CampaignFacts& facts) {
                               ? fmt::format("{}: {}", search.title,
                                             search.plan == nullptr ? "" : search.plan(experiment))
                               : fmt::format("{} searches in one campaign", facts.plans.size())});
-  AddTally(summary, summary.OnlySearch(), table);
+  if (ConditionsOf(summary).size() > 1) {
+    table.AddRow({"runs", FormatCount(summary.runs_done)});
+  } else {
+    AddTally(summary, summary.OnlySearch(), table);
+  }
   AddReproducibility(summary, table);
   table.AddRow({"state", summary.finished ? "finished" : "not finished"});
   return table.ToHtml();
@@ -64,12 +71,15 @@ std::string TestedHtml(const CampaignFacts& facts) {
 
 std::string ProvenanceHtml(const CampaignFacts& facts) {
   std::vector<std::string> seeds;
-  for (const SearchPlan& plan : facts.plans) seeds.push_back(fmt::format("{}", plan.experiment.seed));
+  for (const SearchPlan& plan : facts.plans) {
+    const std::string seed = fmt::format("{}", plan.experiment.seed);
+    if (std::ranges::find(seeds, seed) == seeds.end()) seeds.push_back(seed);
+  }
   const CampaignHistory& history = facts.history;
   Table table({"", ""});
   table.AddRow({"made by", fmt::format("gauntlet {}", facts.software_version)});
   table.AddRow({"golden hashes", facts.golden_hashes});
-  table.AddRow({facts.plans.size() == 1 ? "seed" : "seeds", Listed(seeds)});
+  table.AddRow({seeds.size() == 1 ? "seed" : "seeds", Listed(seeds)});
   table.AddRow({"hosts of workers", Listed(history.hosts)});
   table.AddRow({"created", TimeText(history.created_unix_ms)});
   table.AddRow({"last event", TimeText(history.last_unix_ms)});
@@ -94,14 +104,16 @@ std::string AgainCommand(const CampaignFacts& facts) {
 std::string CommandsHtml(const CampaignFacts& facts) {
   const std::string dir = PastedPath(facts.directory);
   Section section{.title = "Commands"};
+  for (NextCommand& one : NextCommandsOf(facts.summary, facts.answers, "gauntlet", facts.directory)) {
+    one.purpose.front() = static_cast<char>(std::toupper(one.purpose.front()));
+    section.commands.push_back(std::move(one));
+  }
   if (const std::string again = AgainCommand(facts); !again.empty()) {
     section.commands.push_back({again, "The same campaign once more; it must end with the same state hash"});
     section.commands.push_back({"gauntlet show again", "Its state hash"});
   }
   if (!facts.summary.finished)
     section.commands.push_back({"gauntlet resume " + dir, "Go on where it stopped"});
-  section.commands.push_back({fmt::format("gauntlet confirm {} --all-failing", dir),
-                              "How often do the failing cases fail with fresh seeds?"});
   section.commands.push_back(
       {fmt::format("gauntlet export {} --format csv --out runs.csv", dir), "Every run as a table"});
   return ToHtml(section);
@@ -134,9 +146,22 @@ std::string CoursesHtml(const CampaignPages& pages) {
 }
 
 std::string SearchesHtml(const CampaignSummary& summary) {
-  if (summary.OnlySearch() != nullptr) return "";
-  return fmt::format("<details><summary>The {} searches</summary>{}</details>\n", summary.searches.size(),
-                     SearchesTable(summary).ToHtml());
+  constexpr std::size_t kMostSearches = 100;
+  const std::size_t searches = summary.searches.size();
+  if (searches == 1) return "";
+  return fmt::format("<details><summary>The {}{} searches</summary>{}</details>\n",
+                     searches > kMostSearches ? fmt::format("first {} of ", kMostSearches) : "", searches,
+                     SearchesTable(summary, kMostSearches).ToHtml());
+}
+
+// Of a sweep, what it was made for.
+std::string ConditionsHtml(const CampaignFacts& facts) {
+  constexpr std::size_t kMostConditions = 100;
+  const std::vector<Condition> conditions = ConditionsOf(facts.summary);
+  if (conditions.size() < 2) return "";
+  std::string html = "<h3>How often it fails under each setting</h3>\n";
+  for (const NamedFigure& figure : ConditionFigures(facts)) html += FigureHtml(figure, facts.directory);
+  return html + ConditionsTable(conditions).First(kMostConditions).ToHtml();
 }
 
 // What a search over settings has found; what became of single runs is not what it is about.
@@ -153,25 +178,29 @@ std::string SettingsHtml(const CampaignFacts& facts) {
 
 }  // namespace
 
+std::string CampaignHeading(const CampaignFacts& facts) {
+  return fmt::format("<h2>{} <span class=\"soft\">{}</span></h2>\n", Html(facts.summary.experiment),
+                     Html(facts.directory));
+}
+
 std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
   const CampaignFacts& facts = pages.facts;
   std::string html =
-      fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}</p>\n<p class=\"verdict\">{}</p>\n",
-                  Html(facts.summary.experiment), Html(facts.directory), Html(VerdictOf(pages)));
+      CampaignHeading(facts) + fmt::format("<p class=\"verdict\">{}</p>\n", Html(VerdictOf(pages)));
   if (!facts.notes.empty()) {
     html += "<ul class=\"notes\">\n";
     for (const std::string& note : facts.notes) html += fmt::format("<li>{}</li>\n", Html(note));
     html += "</ul>\n";
   }
-  html += SmallestLayoutsHtml(pages, number);
+  html += ConditionsHtml(facts) + SmallestLayoutsHtml(pages, number);
   const bool of_settings = facts.fit || !facts.margins.empty();
-  html += of_settings ? SettingsHtml(facts) : DistinctFailuresHtml(pages, number);
+  html += of_settings ? SettingsHtml(facts)
+                      : ToughestRunsHtml(pages, number) + DistinctFailuresHtml(pages, number);
   html += fmt::format(
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
   if (!of_settings) html += CoursesHtml(pages);
-  for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(
                     "<details><summary>The whole experiment, as it was resolved</summary><pre>{}</pre>"

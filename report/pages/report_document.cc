@@ -105,8 +105,8 @@ Json SightRangeOf(const sim::RunSpec& spec) {
   return nullptr;
 }
 
-Json CampaignJson(const CampaignPages& pages, std::size_t number) {
-  const Table table = CaseTable(pages, number, pages.facts.cases.size());
+Json CampaignJson(const CampaignPages& pages, bool served) {
+  const Table table = CaseTable(pages.facts, served ? 0 : pages.facts.cases.size());
   Json columns = Json::array();
   for (const Column& column : table.columns())
     columns.push_back({{"key", column.key}, {"title", column.title}, {"number", column.at_right}});
@@ -118,7 +118,7 @@ Json CampaignJson(const CampaignPages& pages, std::size_t number) {
           {"runs_done", pages.facts.summary.runs_done},
           {"failure_types", std::move(types)},
           {"case_columns", std::move(columns)},
-          {"cases", table.ToJsonRows()}};
+          {"cases", served ? Json() : table.ToJsonRows()}};
 }
 
 }  // namespace
@@ -162,7 +162,8 @@ Json ReportDocument(const Report& report) {
   const std::vector<CampaignPages>& campaigns = report.campaigns;
   Json json = {{"served", report.served}, {"campaigns", Json::array()}, {"replays", Json::object()}};
   for (std::size_t i = 0; i < campaigns.size(); ++i) {
-    json["campaigns"].push_back(CampaignJson(campaigns[i], i));
+    json["campaigns"].push_back(CampaignJson(campaigns[i], report.served));
+    if (report.served) continue;
     for (const ShownRun& shown : campaigns[i].shown) {
       if (shown.figure.result.trajectory.empty()) continue;
       json["replays"][IdOfRun(i, shown.report.stored.id)] = ReplayDocument(shown.figure);

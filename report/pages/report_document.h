@@ -10,7 +10,9 @@ namespace gauntlet {
 
 // {"served", "campaigns": [{"directory", "runs_done", "failure_types",
 //  "case_columns": [{"key", "title", "number"}], "cases": [[...]]}],
-//  "replays": {ID: ...}}, campaigns in their order, replays by the ids of their pages.
+//  "replays": {ID: ...}}, campaigns in their order, replays by the ids of their pages. Of pages that are
+//  served "cases" is
+// null and there are no replays: scripts ask the server for them.
 nlohmann::ordered_json ReportDocument(const Report& report);
 
 // A run that plays. Lengths in m, times in s, angles in rad; `poses` in base64, four bytes for each moment of

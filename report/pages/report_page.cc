@@ -46,6 +46,11 @@ std::string FirstCase(const Report& report) {
   return "";
 }
 
+// Whoever names several sets asks for their comparison.
+bool ComparisonFirst(const Report& report) {
+  return !report.comparisons.comparisons.empty();
+}
+
 // The pages that a report has besides those of its campaigns.
 struct OtherPages {
   std::string comparison;
@@ -64,11 +69,12 @@ OtherPages OtherPagesOf(const Report& report) {
 }
 
 std::string NavigationHtml(const Report& report, const OtherPages& others) {
-  std::string html =
-      "<nav aria-label=\"Pages\">\n<a href=\"#overview\">Overview</a>\n<a href=\"#failures\">Failures</a>\n";
+  const std::string comparison = others.comparison.empty() ? "" : "<a href=\"#comparison\">Comparison</a>\n";
+  std::string html = "<nav aria-label=\"Pages\">\n" + (ComparisonFirst(report) ? comparison : "") +
+                     "<a href=\"#overview\">Overview</a>\n<a href=\"#failures\">Failures</a>\n";
   if (const std::string first = FirstCase(report); !first.empty())
     html += fmt::format("<a href=\"#{}\" data-page=\"case\">Runs</a>\n", first);
-  if (!others.comparison.empty()) html += "<a href=\"#comparison\">Comparison</a>\n";
+  if (!ComparisonFirst(report)) html += comparison;
   if (!others.parameters.empty()) html += "<a href=\"#parameters\">Parameters</a>\n";
   if (report.served) html += "<a href=\"#live\">Live</a>\n";
   return html + "</nav>\n";
@@ -99,9 +105,7 @@ std::string LiveHtml(const Report& report) {
   std::string html = "<section class=\"page\" id=\"live\">\n";
   for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
     const CampaignFacts& facts = report.campaigns[i].facts;
-    html += fmt::format(
-        "<h2>{}</h2>\n<p class=\"soft\">{}</p>\n<div class=\"live\" data-campaign=\"{}\"></div>\n",
-        Html(facts.summary.experiment), Html(facts.directory), i);
+    html += CampaignHeading(facts) + fmt::format("<div class=\"live\" data-campaign=\"{}\"></div>\n", i);
   }
   return html + "</section>\n";
 }
@@ -167,12 +171,13 @@ std::string ReportPage(const Report& report) {
   for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
     overview += OverviewHtml(report.campaigns[i], i);
     failures += FailuresHtml(report.campaigns[i], i);
-    cases += CasesHtml(report.campaigns[i], i);
+    if (!report.served) cases += CasesHtml(report.campaigns[i], i);  // a server gives them one by one
   }
   overview += CampaignsTable(report);
   const SetComparisons& comparisons = report.comparisons;
   if (comparisons.comparisons.empty()) overview += ComparisonHtml({}, comparisons.notes);
   const OtherPages others = OtherPagesOf(report);
+  const std::string comparison = SectionHtml("comparison", others.comparison);
   const std::string script = fmt::format("\n{}", kPageScript);
   return HeadHtml(TitleOf(report), script, report.served) +
          fmt::format(
@@ -183,9 +188,9 @@ std::string ReportPage(const Report& report) {
              "tells where, how often and how. A run is one simulation; its fitness says how well the "
              "swarm did, lower means a tougher course.</p></header>\n<main>\n{}",
              NavigationHtml(report, others)) +
-         SectionHtml("overview", overview) + SectionHtml("failures", failures) + cases +
-         SectionHtml("comparison", others.comparison) + SectionHtml("parameters", others.parameters) +
-         LiveHtml(report) +
+         (ComparisonFirst(report) ? comparison : "") + SectionHtml("overview", overview) +
+         SectionHtml("failures", failures) + cases + (ComparisonFirst(report) ? "" : comparison) +
+         SectionHtml("parameters", others.parameters) + LiveHtml(report) +
          fmt::format(
              "</main>\n<footer>Made by Gauntlet. {}</footer>\n"
              "<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n"

@@ -5,7 +5,9 @@
 
 #include "base/number_text.h"
 #include "controllers/registry.h"
+#include "proto/run_text.h"
 #include "report/pages/campaign_pages.h"
+#include "report/tables/conditions.h"
 #include "study/fits/fit_text.h"
 
 namespace gauntlet {
@@ -42,14 +44,13 @@ std::string Learning(const std::vector<SearchCourse>& courses) {
 std::string Toughest(const CampaignFacts& facts) {
   if (const Confirmation* one = ToughestOf(facts.answers.confirmations))
     return fmt::format(" The toughest test case, that of run {}, failed in {} runs with fresh seeds.",
-                       one->run, OutOf(one->tally));
+                       proto::RunText(one->run), OutOf(one->tally));
   const auto toughest = std::ranges::find_if(
       facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.toughest != 0; });
   if (toughest == facts.cases.end()) return "";
-  return fmt::format(" The toughest test case, number {}{}, made the swarm fail in {} of {} runs.",
-                     toughest->individual,
-                     facts.plans.size() > 1 ? fmt::format(" of search {}", toughest->search) : "",
-                     FormatCount(toughest->total_failures), FormatCount(toughest->runs));
+  return fmt::format(" The toughest test case, that of run {}, made the swarm fail in {} of {} runs.",
+                     proto::RunText(toughest->toughest), FormatCount(toughest->total_failures),
+                     FormatCount(toughest->runs));
 }
 
 std::string Confirmed(const CampaignFacts& facts) {
@@ -76,6 +77,12 @@ std::string CourseOf(const CampaignPages& pages) {
   if (summary.failing_runs == 0) {
     return fmt::format("The {} held out: in none of {} runs did it fail.{}", SwarmOf(facts),
                        FormatCount(summary.runs_done), Confirmed(facts));
+  }
+  if (const std::vector<Condition> conditions = ConditionsOf(summary); conditions.size() > 1) {
+    const auto broke =
+        std::ranges::count_if(conditions, [](const Condition& one) { return one.failing_runs > 0; });
+    return fmt::format("The {} broke under {} of {} settings: {} of the runs failed.{}", SwarmOf(facts),
+                       broke, conditions.size(), RangeOf(conditions), Confirmed(facts));
   }
   const double share = static_cast<double>(summary.failing_runs) / static_cast<double>(summary.runs_done);
   return fmt::format("The {} broke: it failed in {} of {} runs ({}).{}{}{}", SwarmOf(facts),

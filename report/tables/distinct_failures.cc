@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
+#include "proto/run_text.h"
 
 namespace gauntlet {
 namespace {
@@ -15,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 Json SmallestJson(const SmallestLayout& smallest) {
   const proto::CaseFailures& verified = smallest.document.lineage->verified;
-  return {{"case", fmt::format("run {}", smallest.run)},
+  return {{"case", fmt::format("run {}", proto::RunText(smallest.run))},
           {"obstacles", smallest.document.test_case.obstacles.size()},
           {"k", verified.failures},
           {"n", verified.runs},

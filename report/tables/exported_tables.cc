@@ -11,6 +11,7 @@
 
 #include "master/dispatch/pool/worker_program.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "report/tables/run_table.h"
 #include "report/tables/search_columns.h"
 #include "sim/robot/foot_bot.h"
@@ -33,11 +34,12 @@ const std::vector<DataColumn> kCaseColumns = {
     {"path", "m", "of a moving obstacle: x and y of each point of its path, separated by spaces"},
     {"light", "", "colour of the lamps that it carries"}};
 
-const std::vector<DataColumn> kTrajectoryColumns = {{"run", "", "number of the run"},
-                                                    {"robot", "", "number of the robot, from 0"},
-                                                    {"time", "s", "simulated time, every 5 s"},
-                                                    {"x", "m", "position, from the middle of the arena"},
-                                                    {"y", "m", "position"}};
+const std::vector<DataColumn> kTrajectoryColumns = {
+    {"run", "", "number of the run within the campaign: `id` of the runs"},
+    {"robot", "", "number of the robot, from 0"},
+    {"time", "s", "simulated time, every 5 s"},
+    {"x", "m", "position, from the middle of the arena"},
+    {"y", "m", "position"}};
 
 const std::vector<DataColumn> kEventColumns = {{"time", "", "UTC, ISO 8601"},
                                                {"kind", "", "what happened, in one word"},
@@ -49,7 +51,8 @@ Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chos
   for (const RunId id : chosen) {
     TRY(const auto run, store.LoadRun(id));
     if (!run.has_value())
-      return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
+      return Error{ErrorKind::kNotFound,
+                   fmt::format("there is no run {} in this campaign", proto::RunText(id))};
     TRY(visit(*run));
   }
   if (!chosen.empty()) return Ok{};
@@ -122,7 +125,9 @@ Status WriteTrajectories(const StoredCampaign& campaign, const std::set<RunId>& 
                          std::uint64_t& simulated) {
   return ForEachChosen(campaign, chosen, [&](const StoredRun& run) -> Status {
     const Result<sim::RunResult> result = WithWays(run, simulated);
-    if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
+    if (!result)
+      return Error{result.error().kind,
+                   fmt::format("run {}: {}", proto::RunText(run.id), result.error().message)};
     for (std::size_t robot = 0; robot < result->robots.size(); ++robot) {
       const std::vector<sim::Vec2>& way = result->robots[robot].waypoints;
       for (std::size_t i = 0; i < way.size(); ++i) {

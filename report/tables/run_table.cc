@@ -11,13 +11,16 @@
 #include "controllers/registry.h"
 #include "master/campaign/verdict_text.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "sim/robot/foot_bot.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
 namespace {
 
-const DataColumn kId = {"id", "", "number of the run, as `replay` takes it"};
+const std::vector<DataColumn> kNumbers = {
+    {"id", "", "number of the run within the campaign, as `replay` takes it"},
+    {"run", "", "the same as SEARCH:RUN, its number within its search, as `replay` takes it too"}};
 
 const std::vector<DataColumn>& ColumnsOfTheRun() {
   static const std::vector<DataColumn> columns = {
@@ -51,7 +54,7 @@ void Append(const Some& some, auto& all) {
 }
 
 Error InRun(RunId run, const Error& error) {
-  return {error.kind, fmt::format("run {}: {}", run, error.message)};
+  return {error.kind, fmt::format("run {}: {}", proto::RunText(run), error.message)};
 }
 
 // The metrics of the search's first completed run, in the scenario's order; none when it has no such run.
@@ -73,7 +76,7 @@ Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) 
 }  // namespace
 
 RunColumns CommonRunColumns() {
-  std::vector<DataColumn> before = {kId};
+  std::vector<DataColumn> before = kNumbers;
   Append(CommonSearchColumns(), before);
   Append(ColumnsOfTheRun(), before);
   return {std::move(before), ColumnsBehindMetrics()};
@@ -89,7 +92,7 @@ Result<RunTable> RunTable::Make(const std::vector<SearchPlan>& plans, ResultStor
 }
 
 RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::vector<std::string>>& metrics)
-    : searches_(plans), columns_{kId}, metrics_(plans.size()) {
+    : searches_(plans), columns_(kNumbers), metrics_(plans.size()) {
   Append(searches_.columns(), columns_);
   Append(ColumnsOfTheRun(), columns_);
   for (std::size_t i = 0; i < plans.size(); ++i) {
@@ -115,7 +118,7 @@ Result<std::vector<Value>> RunTable::Row(const StoredRun& run) const {
   const sim::SwarmFailure& failure = result->failure;
   const bool typed = failure.type >= 0;
   const std::string& untyped = untyped_failures_.at(run.search - 1);
-  std::vector<Value> cells = {run.id};
+  std::vector<Value> cells = {run.id, proto::RunAddress(run.id)};
   cells.reserve(columns_.size());
   Append(searches_.CellsOf(run.search), cells);
   Append(std::initializer_list<Value>{run.individual, std::uint64_t{run.generation},
@@ -131,9 +134,9 @@ Result<std::vector<Value>> RunTable::Row(const StoredRun& run) const {
     if (!completed) break;
     const auto metric = metrics_.at(run.search - 1).find(name);
     if (metric == metrics_.at(run.search - 1).end())
-      return Error{
-          ErrorKind::kCorrupt,
-          fmt::format("run {} has the metric {}, which its search's first run has not", run.id, name)};
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("run {} has the metric {}, which its search's first run has not",
+                               proto::RunText(run.id), name)};
     if (const auto measured = MeasuredValue(metric->second.info, value))
       cells[metric->second.place] = *measured;
   }

@@ -11,6 +11,7 @@
 #include "analysis/statistics/proportions.h"
 #include "base/check.h"
 #include "base/printable.h"
+#include "proto/run_text.h"
 #include "search/archive/failure_archive.h"
 #include "search/search_table.h"
 
@@ -77,6 +78,14 @@ const PopulationMember& MemberOf(const SearchSummary& summary, const ArchivedFai
   return *member;
 }
 
+std::vector<const PopulationMember*> SmallestFirst(const SearchSummary& summary) {
+  std::vector<const PopulationMember*> members;
+  for (const ArchivedFailure& failure : summary.archive.failures)
+    members.push_back(&MemberOf(summary, failure));
+  std::ranges::stable_sort(members, {}, [](const auto* member) { return SizeOf(member->genome); });
+  return members;
+}
+
 void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table) {
   const SearchRow* search = only == nullptr ? nullptr : FindSearch(only->search);
   const SearchProgress& progress = tally.progress;
@@ -133,13 +142,16 @@ std::vector<std::string> WarningsOf(const CampaignSummary& summary) {
   return warnings;
 }
 
-Table SearchesTable(const CampaignSummary& summary) {
+Table SearchesTable(const CampaignSummary& summary, std::size_t most) {
   constexpr std::size_t kShownDigits = 16;
-  Table table({">search", "settings", ">generation", ">runs", ">best", ">mean", ">total failures",
-               OnTerminals("state hash"), OnPages("finished")});
+  const bool generations = std::ranges::any_of(
+      summary.searches, [](const SearchSummary& one) { return one.progress.generations > 1; });
+  Table table({">search", "settings", generations ? ">generation" : ForPrograms(""), ">runs", ">best",
+               ">mean", ">total failures", OnTerminals("state hash"), OnPages("finished")});
   for (const SearchSummary& one : summary.searches) {
+    if (table.size() == most) break;
     table.AddRow({table.size() + 1, one.settings,
-                  fmt::format("{}/{}", one.progress.generation, one.progress.generations),
+                  generations ? fmt::format("{}/{}", one.progress.generation, one.progress.generations) : "",
                   CountCell(one.runs_done), FitnessCell(one.fitness.lowest()),
                   FitnessCell(one.fitness.mean()), CountCell(one.total_failures),
                   one.state_hash.substr(0, kShownDigits), one.finished});
@@ -176,7 +188,8 @@ Table PopulationTable(const std::vector<const PopulationMember*>& members, bool 
     table.AddRow({one->id, FitnessCell(one->fitness), one->genome.size(), one->birth_generation,
                   JsonCell(IdsJson(one->parents)), JsonCell(GenomeJson(one->genome)),
                   JsonCell(IdsJson(one->runs), FormatCount(one->runs.size())),
-                  one->runs.empty() ? Cell() : one->runs.back(), TextCell(one->name)});
+                  one->runs.empty() ? Cell() : Cell(proto::RunText(one->runs.back()), one->runs.back()),
+                  TextCell(one->name)});
   }
   return table;
 }
@@ -215,8 +228,8 @@ Table ArchiveTable(const SearchSummary& summary, const std::string& replay) {
         JsonCell(failure.middle)};
     for (const double value : failure.middle) row.push_back(DecimalCell(value, 2));
     const RunId run = member.runs.empty() ? 0 : member.runs.front();
-    row.push_back(run == 0 ? Cell() : run);
-    row.emplace_back(fmt::format("{} {} --svg case-{}.svg", replay, run, failure.individual));
+    row.push_back(run == 0 ? Cell() : Cell(proto::RunText(run), run));
+    row.emplace_back(fmt::format("{} {} --svg case-{}.svg", replay, proto::RunText(run), failure.individual));
     table.AddRow(std::move(row));
   }
   return table;

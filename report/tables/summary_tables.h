@@ -16,6 +16,9 @@ std::string RangeText(const controllers::DescriptorAxis& axis, int part);
 // Of the population that the summary tells of, which holds every archived failure.
 const PopulationMember& MemberOf(const SearchSummary& summary, const ArchivedFailure& failure);
 
+// The archive's failures, those with the fewest and shortest obstacles first.
+std::vector<const PopulationMember*> SmallestFirst(const SearchSummary& summary);
+
 // Facts of one search, or of all (`only` is nullptr), added to a table of names and texts.
 void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table);
 // Of a campaign whose runs start a program of the user's: whether they end the same once more.
@@ -25,8 +28,8 @@ std::vector<std::string> WarningsOf(const CampaignSummary& summary);
 // Of a campaign with controllers of plug-ins: what is to blame when results differ.
 std::string WhyNotReproducible(const CampaignSummary& summary);
 
-// A row for each search of a sweep.
-Table SearchesTable(const CampaignSummary& summary);
+// A row for each of the first searches of a sweep.
+Table SearchesTable(const CampaignSummary& summary, std::size_t most);
 // A row for each generation.
 Table GenerationTable(const SearchSummary& summary);
 // A row for each of these members; `named`: they are given cases.

@@ -69,9 +69,10 @@ struct ServedCampaigns::Followed {
     return Ok{};
   }
 
-  // What is known of the campaign, read anew when the run is not among it.
+  // What is known of the campaign, read anew when the run is not among it; 0 = whatever is known.
   Result<std::shared_ptr<const CampaignFacts>> FactsWith(RunId run) {
     const std::lock_guard lock(mutex);
+    if (facts != nullptr && run == 0) return facts;
     if (facts != nullptr && std::ranges::find(facts->runs, run, &RunFacts::id) != facts->runs.end())
       return facts;
     TRY(CampaignFacts read, ReadFacts(directory));
@@ -135,6 +136,7 @@ HttpAnswer ServedCampaigns::Answer(const std::string& path) {
   Followed& campaign = *followed[numbers[0]];
   if (parts[0] == "progress" && numbers.size() <= 2)
     return AnswerProgress(campaign, numbers.size() == 2 ? numbers[1] : 0);
+  if (parts[0] == "cases" && numbers.size() == 1) return AnswerCases(campaign);
   if (parts[0] == "run" && numbers.size() == 2) return AnswerRun(campaign, numbers[0], numbers[1]);
   return NoSuchPage();
 }
@@ -184,6 +186,12 @@ HttpAnswer ServedCampaigns::AnswerProgress(Followed& followed, std::size_t cours
   const std::vector<SearchCourse> courses = followed.feed.courses();
   if (course >= courses.size()) return NoSuchPage();
   return {.type = "image/svg+xml", .body = FiguresOf(courses, {})[course].svg()};
+}
+
+HttpAnswer ServedCampaigns::AnswerCases(Followed& followed) {
+  const Result<std::shared_ptr<const CampaignFacts>> known = followed.FactsWith(0);
+  if (!known) return Gone(known.error());
+  return JsonAnswer(CaseTable(**known, (*known)->cases.size()).ToJsonRows());
 }
 
 HttpAnswer ServedCampaigns::AnswerRun(Followed& followed, std::size_t campaign, RunId run) {

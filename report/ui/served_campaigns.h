@@ -26,6 +26,7 @@ class ServedCampaigns {
   //   ""              the pages, of what is stored now (HTML)
   //   "status"        {"campaigns": [{"directory", "error", "status", "events", "toughest"}]}: what each does
   //   "progress/C"    how its searches went so far (SVG); "progress/C/K": the K-th kind of search, from 0
+  //   "cases/C"       [[...]]: a row for each test case, with the columns that the pages name
   //   "run/C/ID"      {"page", "replay"}: a run, simulated again
   // Anything else: 404. What cannot be read, because it was deleted, for instance: 410 with the reason.
   HttpAnswer Answer(const std::string& path);
@@ -37,6 +38,7 @@ class ServedCampaigns {
   HttpAnswer AnswerPages();
   HttpAnswer AnswerStatus();
   HttpAnswer AnswerProgress(Followed& followed, std::size_t course);
+  HttpAnswer AnswerCases(Followed& followed);
   HttpAnswer AnswerRun(Followed& followed, std::size_t campaign, RunId run);
 
   const std::vector<std::string> sets_;

@@ -91,9 +91,11 @@ std::optional<BrokenRule> CheckObjective(const Experiment& experiment) {
 }
 
 std::uint64_t CountDistinctGenomes(const std::vector<Individual>& individuals) {
-  std::set<std::uint64_t> genomes;
-  for (const Individual& one : individuals) genomes.insert(GenomeHash(one.test_case.obstacles));
-  return genomes.size();
+  std::vector<std::uint64_t> genomes;
+  genomes.reserve(individuals.size());
+  for (const Individual& one : individuals) genomes.push_back(GenomeHash(one.test_case.obstacles));
+  std::ranges::sort(genomes);
+  return static_cast<std::uint64_t>(std::unique(genomes.begin(), genomes.end()) - genomes.begin());
 }
 
 PopulationSearch::PopulationSearch(const SearchSetup& setup)

@@ -64,7 +64,9 @@ void EncodeGenome(const Genome& genome, CanonicalEncoder& encoder) {
 
 Genome DecodeGenome(CanonicalDecoder& decoder) {
   const std::uint64_t head = decoder.Uint();
+  constexpr std::uint64_t kUsualGenes = 64;  // what the bytes claim may be wrong
   Genome genome;
+  genome.reserve(std::min(head & ~kExtended, kUsualGenes));
   for (std::uint64_t left = head & ~kExtended; left > 0 && decoder.ok(); --left) {
     genome.push_back(DecodeGene((head & kExtended) != 0, decoder));
   }

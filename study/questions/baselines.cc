@@ -65,6 +65,21 @@ Examples:
   gauntlet baseline DIR
   gauntlet baseline DIR --json)";
 
+// "0 of 20 runs under each of 7 settings", or the first of them one by one.
+std::string CountsOf(const std::vector<Baseline>& baselines) {
+  const auto counts = [](const Baseline& one) { return std::pair(one.tally.failures, one.tally.runs()); };
+  const auto [failures, runs] = counts(baselines.front());
+  if (baselines.size() > 1 &&
+      std::ranges::count(baselines, counts(baselines.front()), counts) == std::ssize(baselines))
+    return fmt::format("{} of {} runs under each of {} settings", failures, runs, baselines.size());
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kNamedBaselines, baselines.size()); ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", Of(baselines[i]));
+  if (baselines.size() > kNamedBaselines)
+    text += fmt::format(" and {} more", baselines.size() - kNamedBaselines);
+  return text;
+}
+
 }  // namespace
 
 double Baseline::Share() const {
@@ -103,13 +118,8 @@ std::string InWords(const std::vector<Baseline>& baselines, const std::string& p
   if (baselines.empty())
     return fmt::format("How often it fails without any obstacle is not known: {} baseline {} looks.", program,
                        PastedPath(dir));
-  std::string runs;
-  for (std::size_t i = 0; i < std::min(kNamedBaselines, baselines.size()); ++i)
-    runs += fmt::format("{}{}", i == 0 ? "" : ", ", Of(baselines[i]));
-  if (baselines.size() > kNamedBaselines)
-    runs += fmt::format(" and {} more", baselines.size() - kNamedBaselines);
   const double share = baselines.front().Share();
-  const std::string words = fmt::format("It fails without any obstacle in {}", runs);
+  const std::string words = "It fails without any obstacle in " + CountsOf(baselines);
   if (share >= 0.5) return words + ": what follows says little about obstacles.";
   if (share >= 0.1) return words + ": a failure may have nothing to do with obstacles.";
   return words + ".";

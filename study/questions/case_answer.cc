@@ -70,7 +70,7 @@ Status AddAnswers(const SearchPlan& plan, std::size_t number, bool finished, Res
   TRY(const auto layouts, store.LoadIndividuals(id));
   for (const Individual& one : layouts) {
     if (!one.parents.empty()) continue;
-    answers.push_back({.name = one.test_case.name,
+    answers.push_back({.name = CurrentName(one.test_case.name),
                        .run = RunOfName(one.test_case.name),
                        .search = number,
                        .test_case = one.test_case,

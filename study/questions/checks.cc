@@ -12,6 +12,7 @@
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
 #include "proto/run_failure.h"
+#include "proto/run_text.h"
 #include "search/cases/corpus_file.h"
 #include "search/given/repeated_case.h"
 #include "study/questions/corpus_experiment.h"
@@ -205,8 +206,8 @@ Result<Told> TellCheck(const Asking& asking, const Call& call, std::span<const C
     const RunId run = FirstToSee(one.answer);
     if (one.outcome == CheckOutcome::kWorse && run > 0)
       told.section.commands.push_back(
-          {fmt::format("{} replay {} {} --svg {}.svg", asking.program, PastedPath(call.directory), run,
-                       PastedPath(one.answer.name)),
+          {fmt::format("{} replay {} {} --svg {}.svg", asking.program, PastedPath(call.directory),
+                       proto::RunText(run), PastedPath(one.answer.name)),
            "see what happened"});
   }
   const std::size_t worse = Count(cases, CheckOutcome::kWorse);

@@ -11,6 +11,7 @@
 #include "controllers/registry.h"
 #include "proto/json_text.h"
 #include "proto/run_failure.h"
+#include "proto/run_text.h"
 #include "search/experiment/failure_cells.h"
 #include "search/given/repeated_case.h"
 #include "study/questions/baselines.h"
@@ -68,9 +69,10 @@ Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
   if (toughest == nullptr) return told;
   const std::string dir = PastedPath(asking.place);
   told.section.commands = {
-      {fmt::format("{} minimise {} {}", asking.program, dir, toughest->run),
+      {fmt::format("{} minimise {} {}", asking.program, dir, proto::RunText(toughest->run)),
        "which of its obstacles does it take?"},
-      {fmt::format("{} blame {} {}", asking.program, dir, toughest->run), "how much does each of them do?"}};
+      {fmt::format("{} blame {} {}", asking.program, dir, proto::RunText(toughest->run)),
+       "how much does each of them do?"}};
   return told;
 }
 

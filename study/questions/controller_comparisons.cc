@@ -14,6 +14,7 @@
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
 #include "proto/json_text.h"
+#include "proto/run_text.h"
 #include "search/search_table.h"
 #include "study/questions/chosen_cases.h"
 #include "study/questions/corpus_experiment.h"
@@ -443,7 +444,8 @@ Result<Told> TellComparison(const Asking& asking, const Call& call, std::span<co
     const Pair& pair = broken ? *found.broken.front() : *found.mended.front();
     const RunId run = pair.sides[broken ? 0 : 1]->runs.front().id;
     told.section.commands.push_back(
-        {fmt::format("{} replay {} {} --svg run-{}.svg", asking.program, dir, run, run),
+        {fmt::format("{} replay {} {} --svg {}.svg", asking.program, dir, proto::RunText(run),
+                     proto::RunFileName(run)),
          broken ? "see a case that A has newly broken" : "see a case that is mended, as it fails with B"});
   }
   told.section.commands.push_back(

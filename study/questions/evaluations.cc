@@ -11,6 +11,7 @@
 #include "base/shell_quoted.h"
 #include "master/campaign/verdict_text.h"
 #include "proto/json_text.h"
+#include "proto/run_text.h"
 #include "search/cases/case_file.h"
 #include "search/search_table.h"
 #include "study/questions/question_table.h"
@@ -268,7 +269,8 @@ void Conclude(const Asking& asking, const Call& call, std::span<const Evaluation
                                                  FormatCount(sum.runs)));
   const std::string dir = PastedPath(call.directory);
   told.section.commands = {
-      {fmt::format("{} replay {} {} --svg run-{}.svg", asking.program, dir, toughest->id, toughest->id),
+      {fmt::format("{} replay {} {} --svg {}.svg", asking.program, dir, proto::RunText(toughest->id),
+                   proto::RunFileName(toughest->id)),
        "see the toughest of these runs"},
       {fmt::format("{} show {} --json", asking.program, dir), "everything, for scripts"}};
 }
@@ -296,7 +298,8 @@ Result<Told> TellEvaluation(const Asking& asking, const Call& call, std::span<co
                   Cell("", TextValue(one.refused)),
                   JsonCell(RunsOf(one).ToJson(), simulated ? FormatCount(one.runs.size()) : "-"),
                   simulated ? CountCell(evaluation.failures) : Cell(),
-                  simulated ? Cell(one.runs.front().id) : Cell(), RemarkOn(one, evaluation)});
+                  simulated ? Cell(proto::RunText(one.runs.front().id), one.runs.front().id) : Cell(),
+                  RemarkOn(one, evaluation)});
     // A file that cannot be read is so under all settings.
     if (const std::string why = WhyRefused(one);
         !one.refused.empty() && std::ranges::count(told.messages, why) == 0)

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/hash.h"
-#include "base/parse_number.h"
 #include "controllers/registry.h"
 #include "controllers/run_start.h"
 #include "master/campaign/verdict_text.h"
@@ -17,6 +16,7 @@
 #include "master/directory/campaign_ownership.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
+#include "proto/run_text.h"
 #include "search/cases/case_file.h"
 #include "search/failure_tally.h"
 #include "search/search_table.h"
@@ -46,13 +46,24 @@ std::size_t PlanOf(const sim::RunSpec& spec, std::size_t search, std::vector<Sea
 Result<CaseInQuestion> CaseOfRun(ResultStore& store, RunId id, const std::string& dir,
                                  std::vector<SearchPlan>& plans) {
   TRY(const auto run, store.LoadRun(id));
-  if (!run.has_value()) return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
+  if (!run.has_value())
+    return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", proto::RunText(id), dir)};
   TRY(auto spec, proto::DecodeRunSpec(run->spec));
   const std::size_t plan = PlanOf(spec, run->search - 1, plans);
-  return CaseInQuestion{fmt::format("{}{}", kOfRun, id), plan, std::move(spec.test_case)};
+  return CaseInQuestion{fmt::format("{}{}", kOfRun, proto::RunText(id)), plan, std::move(spec.test_case)};
 }
 
-// Every different case of a subset, named by its first run in it.
+// The first run of each individual: the one by which an elite is named, as it failed in it.
+Result<std::map<IndividualId, RunId>> FirstRuns(SearchId search, ResultStore& store) {
+  std::map<IndividualId, RunId> first;
+  TRY(store.ForEachRow(search, 0, [&](const StoredRun& run) -> Status {
+    first.emplace(run.individual, run.id);
+    return Ok{};
+  }));
+  return first;
+}
+
+// Every different case of a subset, named by its first run in it; elites by their first run of all.
 Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::string& subset,
                                          bool only_failing) {
   TRY(const auto opened, OpenSubset({dir, subset}));
@@ -61,11 +72,16 @@ Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::stri
   const auto add = [&](const SubsetSearch& search) -> Status {
     const std::string failing(FailingOf(search.plan.experiment));
     TRY(const auto runs, SelectRuns(search, store, opened.subset, failing));
+    std::map<IndividualId, RunId> first;
+    if (!only_failing && RowOf(search.plan.experiment).individuals == Individuals::kElites) {
+      TRY(first, FirstRuns(search.plan.id, store));
+    }
     std::set<IndividualId> individuals;
     std::set<std::pair<std::size_t, std::uint64_t>> cases;
     for (const SelectedRun& run : runs) {
       if ((only_failing && run.value != 1.0) || !individuals.insert(run.individual).second) continue;
-      TRY(auto one, CaseOfRun(store, run.run, dir, questioned.plans));
+      const RunId naming = first.empty() ? run.run : first.at(run.individual);
+      TRY(auto one, CaseOfRun(store, naming, dir, questioned.plans));
       if (cases.insert({one.search, CaseHash(one.test_case)}).second)
         questioned.cases.push_back(std::move(one));
     }
@@ -97,13 +113,20 @@ Result<QuestionedCampaign> PopulationCases(const std::string& dir) {
 }
 
 Result<RunId> ParseRunId(const std::string& text) {
-  if (const auto id = ParseNumber<RunId>(text); id && *id >= 1) return *id;
-  return InvalidInput(fmt::format("{} is no run: RUN_ID is a whole number, see 'gauntlet show DIR'", text));
+  if (const auto run = proto::ParseRun(text)) return *run;
+  return InvalidInput(fmt::format(
+      "{} is no run: RUN_ID is a whole number or SEARCH:RUN, such as 15 or 2:15, see 'gauntlet show DIR'",
+      text));
 }
 
 RunId RunOfName(const std::string& name) {
   if (!name.starts_with(kOfRun)) return 0;
-  return ParseNumber<RunId>(std::string_view(name).substr(kOfRun.size())).value_or(0);
+  return proto::ParseRun(std::string_view(name).substr(kOfRun.size())).value_or(0);
+}
+
+std::string CurrentName(const std::string& name) {
+  const RunId run = RunOfName(name);
+  return run == 0 ? name : fmt::format("{}{}", kOfRun, proto::RunText(run));
 }
 
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case) {
@@ -142,7 +165,7 @@ Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<
   std::vector<RunId> runs;
   std::vector<CaseInQuestion> files;
   for (const std::string& text : names) {
-    if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
+    if (std::ranges::all_of(text, [](char c) { return (c >= '0' && c <= '9') || c == ':'; })) {
       TRY(const RunId run, ParseRunId(text));
       runs.push_back(run);
       continue;

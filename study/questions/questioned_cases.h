@@ -49,6 +49,8 @@ std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::Te
 Result<RunId> ParseRunId(const std::string& text);
 // The run that the case is one of, by its name; 0 when it came from a file.
 RunId RunOfName(const std::string& name);
+// Its name as runs are named now: stored answers may have the run's id in it.
+std::string CurrentName(const std::string& name);
 // The same for the same case under the same experiment, whatever it is called. `about` asks about the case.
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case);
 

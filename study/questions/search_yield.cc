@@ -34,25 +34,6 @@ Result<Candidates> CandidatesOf(const std::string& dir, const std::vector<Search
   return Candidates{elites, std::move(cases)};
 }
 
-// The number within its search of the run from which on the search knew that the case fails. Every layout
-// that an archive keeps failed in its first run; of others the case is named by the first run that failed.
-class FindingRuns {
- public:
-  void Add(const StoredRun& run) {
-    individual_of_[run.id] = run.individual;
-    first_run_.emplace(run.individual, run.id);
-  }
-  std::uint64_t Of(RunId run, bool elite) const {
-    const RunId found = elite ? first_run_.at(individual_of_.at(run)) : run;
-    return found - RunIdOf(SearchOf(run), 1) + 1;
-  }
-  std::uint64_t runs() const { return individual_of_.size(); }
-
- private:
-  std::map<RunId, IndividualId> individual_of_;
-  std::map<IndividualId, RunId> first_run_;
-};
-
 // What both experiments test, or how they search, as lines; "" when they are alike, else the first line of
 // either that differs.
 std::string FirstDifference(const std::string& first, const std::string& second) {
@@ -88,17 +69,14 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
   std::map<std::uint64_t, const Confirmation*> known;
   for (const Confirmation& one : confirmations) known[one.key] = &one;
 
-  std::vector<FindingRuns> finding_runs(plans.size());
+  TRY(const auto totals, campaign.view.store->LoadTotals());
   const std::size_t first = set.searches.size();
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const SearchId id = plans[i].id;
-    TRY(campaign.view.store->ForEachRow(id, 0, [&](const StoredRun& run) {
-      finding_runs[i].Add(run);
-      return Ok{};
-    }));
+    const auto known_runs = std::ranges::find(totals, id, &SearchTotals::search);
     set.searches.push_back({.place = plans.size() > 1 ? fmt::format("{}:search:{}", dir, id) : dir,
                             .experiment = plans[i].experiment,
-                            .runs = finding_runs[i].runs(),
+                            .runs = known_runs == totals.end() ? 0 : known_runs->runs,
                             .confirmed = {}});
   }
   std::size_t unconfirmed = 0;
@@ -113,8 +91,8 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
     const Confirmation& confirmation = *found->second;
     if (confirmation.verdict != FailureVerdict::kFail || !confirmation.middle) continue;
     const DescriptorGrid grid(CellsOf(yield.experiment));
-    yield.confirmed.push_back({grid.CellOf(*confirmation.middle), one.test_case.obstacles.size(),
-                               finding_runs[one.search].Of(RunOfName(one.name), candidates.elites)});
+    yield.confirmed.push_back(
+        {grid.CellOf(*confirmation.middle), one.test_case.obstacles.size(), SequenceOf(RunOfName(one.name))});
   }
   if (unconfirmed == 0) return Ok{};
   return InvalidInput(fmt::format(

@@ -23,7 +23,8 @@ RunId RunOfFile(const fs::path& file) {
   std::string name = file.stem().string();
   if (file.extension() != ".json" || !name.ends_with(kEnding)) return 0;
   name.erase(name.size() - std::string_view(kEnding).size());
-  std::ranges::replace(name, '-', ' ');
+  if (const std::size_t after_run = name.find('-'); after_run != std::string::npos) name[after_run] = ' ';
+  std::ranges::replace(name, '-', ':');
   return RunOfName(name);
 }
 
@@ -34,9 +35,10 @@ std::size_t Obstacles(const SmallestLayout& one) {
 }  // namespace
 
 std::string FileNameOf(const std::string& case_name) {
-  std::string name = RunOfName(case_name) > 0 ? case_name : fs::path(case_name).stem().string();
+  const bool of_run = RunOfName(case_name) > 0;
+  std::string name = of_run ? case_name : fs::path(case_name).stem().string();
   std::ranges::replace_if(
-      name, [](char c) { return c == ' ' || c == '/'; }, '-');
+      name, [&](char c) { return c == ' ' || c == '/' || (of_run && c == ':'); }, '-');
   return name;
 }
 

@@ -17,6 +17,7 @@ CampaignProgress Halfway() {
   CampaignProgress progress;
   progress.search.generation = 12;
   progress.search.generations = 50;
+  progress.each.Add(progress.search);
   progress.runs_done = 1240;
   progress.runs_planned = 2480;
   progress.runs_per_second = 23.4;

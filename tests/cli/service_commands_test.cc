@@ -87,7 +87,7 @@ TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
 TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
   campaigns_.status =
       R"({"state": "running", "master": {"host": "n1", "pid": 7, "epoch": 2, "encrypted": true},
-                "generation": 3, "generations": 50, "runs_done": 1234, "runs_running": 1, "runs_queued": 5,
+                "searches_in_words": "generation 3/50", "runs_done": 1234, "runs_running": 1, "runs_queued": 5,
                 "runs_per_second": 12.5, "why_nothing_runs": null, "worker_list": [
                  {"worker": "ab@n2", "state": "running", "silent_seconds": 0.2,
                   "runs": [{"run": 812, "lease": "100000002", "attempt": 2, "state": "running", "seconds": 1.5},
@@ -99,7 +99,7 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
             "generation 3/50, 1,234 runs done, 1 running, 5 waiting, 12.5/s\n"
             "\n"
             "  worker  state    heard  runs\n"
-            "  ab@n2   running  0.2 s  812 (1.5 s, attempt 2), 813 (next)\n"
+            "  ab@n2   running  0.2 s  812 (1.5 s, attempt 2), next 813\n"
             "  cd@n3   idle     0.4 s  -\n");
   EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
   EXPECT_EQ(nlohmann::ordered_json::parse(out_.str()), nlohmann::ordered_json::parse(campaigns_.status));

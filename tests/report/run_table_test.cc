@@ -77,7 +77,7 @@ struct Rows {
 
 TEST(RunTable, HasTheColumnsThatScriptsRelyOn) {
   EXPECT_THAT(Rows({Plan("", {})}).names,
-              ElementsAre("id", "search", "search_name", "search_seed", "individual", "generation",
+              ElementsAre("id", "run", "search", "search_name", "search_seed", "individual", "generation",
                           "evaluation", "replicate", "seed", "verdict", "fitness", "total_failure",
                           "failure_type", "failure", "birds_left", "split_time", "simulated_time",
                           "cpu_seconds", "hash", "worker", "attempt", "message"));
@@ -91,6 +91,7 @@ TEST(RunTable, SaysOfEveryRunWhatIsStored) {
   for (std::size_t i = 0; i < runs.rows.size(); ++i) {
     const StoredRun& run = runs.stored[i];
     EXPECT_EQ(runs.At(i, "id"), Value(run.id));
+    EXPECT_EQ(runs.At(i, "run"), Value("1:" + std::to_string(run.id)));
     EXPECT_EQ(runs.At(i, "search_name"), Value("flocking"));
     EXPECT_EQ(runs.At(i, "search_seed"), Value("18446744073709551615"));
     EXPECT_EQ(runs.At(i, "seed"), Value(std::to_string(run.seed)));

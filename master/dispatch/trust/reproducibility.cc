@@ -1,4 +1,5 @@
 #include "master/dispatch/trust/reproducibility.h"
+#include "proto/run_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,8 +33,8 @@ void Reproducibility::Differs(proto::RunId run, const std::string& host) {
   open_.erase(run);
   if (state_ == Reproducible::kNo) return;
   state_ = Reproducible::kNo;
-  news_ = {state_,
-           fmt::format("run {} ended differently when it was simulated again on {}", run, NameOf(host))};
+  news_ = {state_, fmt::format("run {} ended differently when it was simulated again on {}",
+                               proto::RunText(run), NameOf(host))};
 }
 
 }  // namespace gauntlet

@@ -63,7 +63,7 @@ class LiveView {
   showHeadline(status) {
     const planned = status.runs_planned ?? 0;
     const parts = [`The campaign ${kStates[status.state] ?? status.state}`];
-    if (status.generations) parts.push(`generation ${grouped(status.generation)} of ${grouped(status.generations)}`);
+    if (status.searches_in_words) parts.push(status.searches_in_words);
     if (status.runs_done !== undefined)
       parts.push(grouped(status.runs_done) + (planned ? ' of ' + grouped(planned) : '') + ' runs');
     if (status.runs_per_second) parts.push(`${status.runs_per_second.toFixed(1)} runs/s`);
@@ -81,7 +81,7 @@ class LiveView {
     count('total failures', status.total_failures);
     count('runs without a result', status.runs_failed);
     if (now.toughest) {
-      const link = make('a', {href: `#run-${this.campaign}-${now.toughest.run}`}, 'run ' + grouped(now.toughest.run));
+      const link = make('a', {href: `#run-${this.campaign}-${now.toughest.run}`}, 'run ' + runText(now.toughest.run));
       rows.push(['toughest so far', make('span', {}, link, `, fitness ${now.toughest.fitness.toFixed(3)}`)]);
     }
     count('workers', status.workers);
@@ -126,8 +126,12 @@ class LiveView {
   showWorkers(status) {
     const order = (worker) => kWorkerStates.indexOf(worker.state);
     const workers = [...status.worker_list].sort((a, b) => order(a) - order(b));
-    const runsOf = (worker) => worker.runs.map((run) =>
-        `${run.run} (${run.state === 'waiting' ? 'next' : run.seconds.toFixed(1) + ' s'})`).join(', ');
+    const runsOf = (worker) => {
+      const waiting = worker.runs.filter((run) => run.state === 'waiting').map((run) => run.run);
+      const running = worker.runs.filter((run) => run.state !== 'waiting')
+          .map((run) => `${runText(run.run)} (${run.seconds.toFixed(1)} s)`);
+      return [...running, ...(waiting.length ? ['next ' + runRanges(waiting)] : [])].join(', ');
+    };
     const rows = workers.slice(0, this.shownWorkers).map((worker) => [
       worker.worker, worker.state + (worker.quarantined ? ': ' + worker.quarantined : ''),
       worker.silent_seconds.toFixed(1) + ' s', grouped(worker.runs_finished ?? 0), runsOf(worker)]);

@@ -13,6 +13,23 @@ function make(name, attributes = {}, ...children) {
   return element;
 }
 
+// A run as people name it: "15", and "2:15" of a campaign's second search.
+const kSequences = 2 ** 40;
+function runText(id) {
+  const run = Number(id);
+  return run < kSequences ? String(run) : `${Math.floor(run / kSequences) + 1}:${run % kSequences}`;
+}
+
+// "3 to 40, 2:7" of ids that ascend.
+function runRanges(ids) {
+  const ranges = [];
+  for (const id of ids.map(Number)) {
+    const last = ranges[ranges.length - 1];
+    if (last && last[1] + 1 === id) last[1] = id; else ranges.push([id, id]);
+  }
+  return ranges.map(([first, last]) => first === last ? runText(first) : `${runText(first)} to ${runText(last)}`).join(', ');
+}
+
 // --- which page is shown: the one that the address names, or that holds what it names
 
 function show() {
@@ -98,7 +115,7 @@ function caseTable(place) {
     if (kind.value === 'shown' && !row[at.run]) return false;
     if (kind.value.startsWith('type ') && row[at.type] !== kind.value.slice(5)) return false;
     const word = text.value.trim().toLowerCase();
-    return word === '' || row.some((cell) => cell !== null && String(cell).toLowerCase().includes(word));
+    return word === '' || row.some((cell, i) => cell !== null && cellText(i, cell).toLowerCase().includes(word));
   }
   function fill() {
     const rows = campaign.cases.filter(wanted);
@@ -127,10 +144,14 @@ function caseTable(place) {
     count.textContent = rows.length + ' of ' + campaign.cases.length + ' cases';
     more.hidden = rows.length <= shown;
   }
+  function cellText(place, value) {
+    return place === at.run ? runText(value) : String(value);
+  }
   function linked(column, value) {
     const id = 'run-' + place.dataset.campaign + '-' + value;
-    if (column.key !== 'run' || !(data.served || document.getElementById(id))) return String(value);
-    return make('a', {href: '#' + id}, String(value));
+    const text = cellText(at[column.key], value);
+    if (column.key !== 'run' || !(data.served || document.getElementById(id))) return text;
+    return make('a', {href: '#' + id}, text);
   }
   at.type = at.type ?? -1;
   text.addEventListener('input', () => { shown = kRowsAtATime; fill(); });

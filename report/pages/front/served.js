@@ -20,7 +20,7 @@ function mustBeFetched(name) {
 async function fetchRun(name) {
   const [, campaign, run] = kRunId.exec(name);
   document.getElementById(name)?.remove();
-  const title = make('h2', {}, 'Run ' + run);
+  const title = make('h2', {}, 'Run ' + runText(run));
   const page = make('section', {class: 'page case', id: name}, title,
                     make('p', {role: 'status'}, 'The run is simulated again ...'));
   document.querySelector('main').append(page);
@@ -40,14 +40,24 @@ async function fetchRun(name) {
 // Where the number of any run can be typed.
 function anyRun(campaign) {
   if (!data.served) return [];
-  const number = make('input', {type: 'number', min: 1, required: '', 'aria-label': 'Number of a run'});
+  const number = make('input', {pattern: '[0-9]+(:[0-9]+)?', required: '', 'aria-label': 'Number of a run, or SEARCH:RUN',
+                                title: 'the number of a run, or SEARCH:RUN'});
   const form = make('form', {class: 'controls any-run'}, make('label', {}, 'run', number),
                     make('button', {}, 'Replay'));
   form.addEventListener('submit', (event) => {
     event.preventDefault();
-    location.hash = `run-${campaign}-${number.value}`;
+    const [run, search] = number.value.split(':').map(Number).reverse();
+    location.hash = `run-${campaign}-${((search ?? 1) - 1) * kSequences + run}`;
   });
   return [form];
 }
 
-document.querySelectorAll('.all-cases').forEach(caseTable);
+document.querySelectorAll('.all-cases').forEach(async (place) => {
+  const campaign = data.campaigns[Number(place.dataset.campaign)];
+  try {
+    campaign.cases ??= await ask(`cases/${place.dataset.campaign}`);
+    caseTable(place);
+  } catch (trouble) {
+    place.append(make('p', {class: 'notes', role: 'alert'}, trouble.message));
+  }
+});

@@ -24,11 +24,11 @@ using testing_support::MemoryStore;
 // Equal for campaigns of the same outcome.
 std::string EndOf(MemoryStore& store, const Experiment& experiment = ToyExperiment(),
                   SearchId search = kOnlySearch) {
-  const std::unique_ptr<SearchAlgorithm> made = MakeToySearch(experiment);
-  const Result<SearchSummary> summary = Summarise(experiment, search, *made, store);
-  if (!summary) return summary.error().message;
-  return fmt::format("{} in generation {} after {} runs", summary->state_hash, summary->progress.generation,
-                     summary->runs_done);
+  const Result<CampaignSummary> campaign = Summarise({{.experiment = experiment, .id = search}}, store);
+  if (!campaign) return campaign.error().message;
+  const SearchSummary& summary = campaign->searches.front();
+  return fmt::format("{} in generation {} after {} runs", summary.state_hash, summary.progress.generation,
+                     summary.runs_done);
 }
 
 std::vector<RunId> IdsIn(const MemoryStore& store) {
@@ -272,7 +272,7 @@ TEST(SearchLoopTest, SearchesOfASweepEndAsTheyWouldAlone) {
   EXPECT_EQ(store.runs.size(), runs);
   ASSERT_FALSE(session.progress.empty());
   EXPECT_EQ(session.progress.back().runs_done, runs);
-  EXPECT_EQ(session.progress.back().searches_finished, 3U);
+  EXPECT_EQ(session.progress.back().each.finished, 3U);
   EXPECT_EQ(session.loop->runs_done(), runs);
 }
 
