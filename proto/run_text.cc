@@ -30,7 +30,8 @@ std::string RunFileName(RunId run) {
   return name;
 }
 
-std::string RunRanges(const std::vector<RunId>& runs) {
+std::string RunRanges(std::vector<RunId> runs) {
+  std::ranges::sort(runs);
   constexpr int kMostRanges = 10;
   std::string text;
   int ranges = 0;

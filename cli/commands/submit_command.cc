@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/duration_text.h"
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/options/sweep.h"
 #include "cli/submitted_campaign.h"
 #include "controllers/command/definition.h"
+#include "master/campaign/forecast.h"
 #include "master/directory/commands.h"
 #include "master/session/bind_endpoint.h"
 #include "proto/json_text.h"
@@ -50,9 +53,27 @@ Status AskForCores(const Experiment& experiment, int& slots) {
   return Ok{};
 }
 
+// What the jobs come to, as a comment behind their scripts.
+Result<ExitCode> PrintCost(CommandContext& context, const std::vector<SearchPlan>& searches,
+                           const slurm::PoolLimits& pool) {
+  TRY(const Forecast forecast, MakeForecast(searches));
+  const int workers = pool.max_allocations * pool.workers_per_allocation;
+  context.out << fmt::format(
+                     "\n# {} runs, about {:.2g} core hours on cores like this machine's; at most {} of {}, "
+                     "with which they take "
+                     "about {}\n",
+                     FormatCount(forecast.runs), forecast.Seconds(1) / 3600.0,
+                     Counted(pool.max_allocations, "allocation"),
+                     Counted(pool.workers_per_allocation, "worker"),
+                     FormatDuration(forecast.Seconds(workers)))
+              << std::flush;
+  return kExitDone;
+}
+
 Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options) {
   TRY(const std::vector<SearchPlan> searches,
       PlanSearches(options.experiment, SetsOf(options.size), options.sweep));
+  for (const std::string& idle : IdleNoise(searches)) PrintMessage(context, idle);
   const Experiment& experiment = searches.front().experiment;
   TRY(const ExperimentText text, ReadExperimentText(options.experiment.experiment));
   TRY(slurm::SlurmSettings settings,
@@ -62,7 +83,7 @@ Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options
   TRY(const slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
 
   TRY(TestJobs(context, campaign, options.dry_run));
-  if (options.dry_run) return kExitDone;
+  if (options.dry_run) return PrintCost(context, searches, settings.pool);
   const bool as_job = settings.master == slurm::MasterPlace::kJob;
   if (!as_job) {
     TRY(TryToListen(settings.bind));
@@ -85,7 +106,9 @@ void AddSubmit(CommandParser& parser) {
   AddSlurmOptions(command, options.slurm);
   AddSweepOptions(command, options.sweep);
   command.add_flag("--dry-run", options.dry_run,
-                   "submit nothing: print the job scripts and what sbatch --test-only says of them");
+                   "submit nothing: print the job scripts, what sbatch --test-only says of them, and how "
+                   "many runs, core hours and "
+                   "allocations it would take");
   std::string settings;
   for (const slurm::SlurmKey& key : slurm::SlurmKeys()) {
     const std::string value = ToSet(key.default_value);

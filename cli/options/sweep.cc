@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,8 +11,10 @@
 #include <fmt/format.h>
 
 #include "base/split.h"
+#include "controllers/run_start.h"
 #include "search/experiment/schema.h"
 #include "search/experiment/seed_list.h"
+#include "search/search_setup.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -46,7 +49,8 @@ Result<Sweep> ParseSweep(const std::string& text) {
   const std::string_view view = text;
   const auto values = equals == std::string::npos ? std::nullopt : SplitList(view.substr(equals + 1));
   if (!values || equals == 0)
-    return InvalidInput(fmt::format("--sweep {}: give a key and its values, key=a,b,c", text));
+    return InvalidInput(
+        fmt::format("--sweep {}: give a key and its values, key=a,b,c; an empty text is written \"\"", text));
   const std::string key = text.substr(0, equals);
   if (key == "seed") return InvalidInput(fmt::format("--sweep {}: seeds are given with --seeds", text));
   if (const auto twice = FirstRepeated(*values))
@@ -211,6 +215,33 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   }
   if (plans.size() == 1) plans.front().settings.clear();
   return plans;
+}
+
+std::vector<std::string> IdleNoise(const std::vector<SearchPlan>& searches) {
+  std::map<std::string, bool> idle;  // by device
+  for (const SearchPlan& plan : searches) {
+    const Experiment& experiment = plan.experiment;
+    // The devices of a plug-in's controller are known to its own process alone.
+    if (experiment.disturbances.noise.empty() || !experiment.plugin.empty() || StartsProgram(experiment))
+      continue;
+    const auto start =
+        controllers::StartOf(SpecOf(experiment, EmptyArena(experiment.arena), experiment.seed));
+    if (!start) continue;
+    for (const auto& [device, noise] : experiment.disturbances.noise) {
+      const bool has = std::ranges::any_of(start->robots, [device = device](const sim::StartingRobot& robot) {
+        return robot.devices.Has(device);
+      });
+      bool& still = idle.try_emplace(sim::KeyOf(device), true).first->second;
+      still = still && !has;
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [device, still] : idle) {
+    if (still)
+      sentences.push_back(fmt::format("noise.{0} changes nothing: no robot of {1} has the device {0}", device,
+                                      searches.front().experiment.scenario));
+  }
+  return sentences;
 }
 
 }  // namespace gauntlet

@@ -1,6 +1,7 @@
 // The searches of a new campaign: one, or those that --sweep and --seeds ask for.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -16,5 +17,8 @@ namespace gauntlet {
 // be the same, and settings that none of the searches reads.
 Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
                                              const std::vector<ExtraSet>& extra, const SweepOptions& sweep);
+
+// Noise of devices that no robot of the swarm has, a sentence each: it changes nothing.
+std::vector<std::string> IdleNoise(const std::vector<SearchPlan>& searches);
 
 }  // namespace gauntlet

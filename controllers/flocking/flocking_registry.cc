@@ -39,7 +39,8 @@ FailureTypes FlockingFailureTypes() {
                    .rows = "their speeds",
                    .untyped = "without a split",
                    .note =
-                       "types do not tell failures apart: two failed runs of one case have the same type "
+                       "with the shipped controller types do not tell failures apart: two failed runs of one "
+                       "case have the same type "
                        "in 15 % of all pairs, of two cases in 11 %; where they fail does, in 93 % and 10 %"};
   for (int type = 0; type < kFailureTypes; ++type)
     all.types.push_back({type, FailureLabel(type), FailureDegrees(type), FailureSpeeds(type)});

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/number_text.h"
 #include "search/given/given_search.h"
 
 namespace gauntlet {
@@ -33,7 +34,7 @@ std::unique_ptr<LayoutQuestion> AskForVerdict(const Experiment& experiment, cons
 }
 
 std::string EvaluationPlan(const Experiment& experiment) {
-  return fmt::format("{} runs each", experiment.search.replicates);
+  return Counted(static_cast<std::uint64_t>(experiment.search.replicates), "run") + " each";
 }
 
 std::string ConfirmationPlan(const Experiment& experiment) {

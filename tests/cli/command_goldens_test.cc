@@ -59,6 +59,7 @@ std::string Stable(std::string text, const std::string& scratch) {
       {std::regex(R"(20\d\d-\d\d-\d\d[T ]\d\d:\d\d(:\d\d(\.\d+)?)?Z?)"), "<time>"},
       {std::regex(R"(20\d\d\d\d\d\dT\d\d\d\d\d\dZ)"), "<time>"},
       {std::regex(R"(( runs? in ).*; workers idle .*)"), "$1<duration and speed>"},
+      {std::regex(R"(about \S+ core hours|they take about .*)"), "<duration>"},
       {std::regex(R"((took |a run takes |re-simulations |\d +|\d \| )\d+\.\d s\b)"), "$1<duration>"},
       {std::regex(R"re("((\w+_)?seconds|bytes|attempt)": [0-9.e+-]+)re"), "\"$1\": <measured>"},
       {std::regex(fmt::format("[0-9a-f]{{16}}@{}", host)), "<worker>"},

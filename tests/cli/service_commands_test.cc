@@ -91,7 +91,11 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
                 "runs_per_second": 12.5, "why_nothing_runs": null, "worker_list": [
                  {"worker": "ab@n2", "state": "running", "silent_seconds": 0.2,
                   "runs": [{"run": 812, "lease": "100000002", "attempt": 2, "state": "running", "seconds": 1.5},
-                           {"run": 813, "lease": "100000003", "attempt": 1, "state": "waiting", "seconds": 1.5}]},
+                           {"run": 813, "lease": "100000003", "attempt": 1, "state": "waiting", "seconds": 1.5},
+                           {"run": 814, "lease": "100000004", "attempt": 1, "state": "waiting", "seconds": 1.5},
+                           {"run": 815, "lease": "100000005", "attempt": 1, "state": "waiting", "seconds": 1.5},
+                           {"run": 1099511627791, "lease": "100000006", "attempt": 1, "state": "waiting",
+                            "seconds": 1.5}]},
                  {"worker": "cd@n3", "state": "idle", "silent_seconds": 0.4, "runs": []}]})";
   EXPECT_EQ(Run({"status", "c"}), kExitDone);
   EXPECT_EQ(out_.str(),
@@ -99,7 +103,7 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
             "generation 3/50, 1,234 runs done, 1 running, 5 waiting, 12.5/s\n"
             "\n"
             "  worker  state    heard  runs\n"
-            "  ab@n2   running  0.2 s  812 (1.5 s, attempt 2), next 813\n"
+            "  ab@n2   running  0.2 s  812 (1.5 s, attempt 2), next 813 to 815, 2:15\n"
             "  cd@n3   idle     0.4 s  -\n");
   EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
   EXPECT_EQ(nlohmann::ordered_json::parse(out_.str()), nlohmann::ordered_json::parse(campaigns_.status));

@@ -20,10 +20,10 @@ function runText(id) {
   return run < kSequences ? String(run) : `${Math.floor(run / kSequences) + 1}:${run % kSequences}`;
 }
 
-// "3 to 40, 2:7" of ids that ascend.
+// "3 to 40, 2:7".
 function runRanges(ids) {
   const ranges = [];
-  for (const id of ids.map(Number)) {
+  for (const id of ids.map(Number).sort((a, b) => a - b)) {
     const last = ranges[ranges.length - 1];
     if (last && last[1] + 1 === id) last[1] = id; else ranges.push([id, id]);
   }

@@ -31,6 +31,28 @@ TEST(CampaignStatusTest, AMasterWithWorkersOfItsOwnNeedsNobodyToStartThem) {
   EXPECT_EQ(WhyNothingRuns({}, {}, backend), "no worker is connected: 1 of the master's own is starting");
 }
 
+SearchProgress InGeneration(std::uint32_t generation, std::uint32_t generations, bool finished = false) {
+  return {.generation = generation, .generations = generations, .finished = finished};
+}
+
+std::string InWords(const std::vector<SearchProgress>& searches) {
+  SearchesProgress progress;
+  for (const SearchProgress& one : searches) progress.Add(one);
+  return progress.InWords();
+}
+
+TEST(SearchesProgressTest, TellsHowFarEachSearchIs) {
+  EXPECT_EQ(InWords({InGeneration(12, 50)}), "generation 12/50");
+  EXPECT_EQ(InWords({InGeneration(50, 50, true)}), "generation 50/50");
+  EXPECT_EQ(InWords({InGeneration(1, 1)}), "") << "no generations";
+  EXPECT_EQ(InWords({InGeneration(12, 50), InGeneration(14, 50), InGeneration(13, 50)}),
+            "0 of 3 searches finished, all in generation 12 to 14 of 50");
+  EXPECT_EQ(InWords({InGeneration(50, 50, true), InGeneration(14, 50)}),
+            "1 of 2 searches finished, the others in generation 14 of 50");
+  EXPECT_EQ(InWords({InGeneration(1, 1, true), InGeneration(1, 1)}), "1 of 2 searches finished");
+  EXPECT_EQ(InWords({InGeneration(50, 50, true), InGeneration(50, 50, true)}), "2 searches finished");
+}
+
 TEST(CampaignStatusTest, ALeaseBeyondTheSlotsWaits) {
   BackendView backend;
   WorkerView& worker = backend.workers.emplace_back();

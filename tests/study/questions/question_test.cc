@@ -56,6 +56,9 @@ Call Planned(const std::string& most = "3") {
 
 TEST(RunOfName, IsTheNumberOfARunAndOfNothingElse) {
   EXPECT_EQ(RunOfName("run 17"), 17U);
+  EXPECT_EQ(RunOfName("run 2:17"), (1ULL << 40U) + 17U);
+  EXPECT_EQ(CurrentName("run 1099511627793"), "run 2:17") << "a stored answer of an older version";
+  EXPECT_EQ(CurrentName("one-wall.json"), "one-wall.json");
   for (const char* none : {"", "run", "run ", "run x", "run 17 ", "run 1.json", "walls.json", "Run 17"})
     EXPECT_EQ(RunOfName(none), 0U) << none;
 }
