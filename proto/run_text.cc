@@ -36,7 +36,7 @@ std::string RunRanges(std::vector<RunId> runs) {
   std::string text;
   int ranges = 0;
   for (std::size_t i = 0; i < runs.size();) {
-    if (ranges++ == kMostRanges) return fmt::format("{} and {} more", text, runs.size() - i);
+    if (ranges++ == kMostRanges) return fmt::format("{} and {} more runs", text, runs.size() - i);
     std::size_t last = i;
     while (last + 1 < runs.size() && runs[last + 1] == runs[last] + 1) ++last;
     text += fmt::format("{}{}", i == 0 ? "" : ", ", RunText(runs[i]));

@@ -19,7 +19,7 @@ std::string RunText(RunId run);
 std::string RunAddress(RunId run);
 // Begins the names of files about it: "run-15", "run-2-15".
 std::string RunFileName(RunId run);
-// "3 to 40, 2:7"; of more than ten ranges the first ones "and 2 more".
+// "3 to 40, 2:7"; of more than ten ranges the first ones "and 2 more runs".
 std::string RunRanges(std::vector<RunId> runs);
 // Reads both, and the id itself. Nothing when it is none of them.
 std::optional<RunId> ParseRun(std::string_view text);

@@ -201,7 +201,7 @@ std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& ans
                      WarningsText(summary) + BaselineWarning(summary.searches.front(), answers, context) +
                      (seen.observed() ? fmt::format("reproducible: {}\n\n", Printable(InWords(seen))) : "");
   if (conditions.size() > 1)
-    text += "How often it fails under each setting\n" +
+    text += "How often it fails under each condition\n" +
             ConditionsTable(conditions).First(kShownSearches).ToText() + "\nThe searches\n";
   text += SearchesTable(summary, kShownSearches).ToText();
   if (searches > kShownSearches)

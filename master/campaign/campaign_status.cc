@@ -278,7 +278,7 @@ std::string SearchesProgress::InWords() const {
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {
   if (RunsOf(backend, false) > 0) return "";
-  if (progress.search.finished) return "the search has finished";
+  if (progress.search.finished) return "the campaign has finished";
   if (master.stopping) return "the campaign is stopping: no more runs are given away";
   const auto lost = std::ranges::count(backend.workers, true, &WorkerView::lost);
   const auto connected = std::ssize(backend.workers) - lost;

@@ -294,7 +294,7 @@ class Campaigns final : public CampaignService {
                      {"nondeterministic", summary.nondeterministic},
                      {"verdicts_of_one_worker", summary.lone_verdicts},
                      {"why_nothing_runs",
-                      summary.finished ? "the search has finished"
+                      summary.finished ? "the campaign has finished"
                                        : "no master serves the campaign: go on with `gauntlet resume DIR`"},
                      {"worker_list", ordered_json::array()}});
   }

@@ -68,7 +68,8 @@ std::vector<NamedFigure> ArchiveFigures(const CampaignFacts& facts) {
   return {
       {"archive", kTitle,
        "A cell for each way in which the swarm breaks, by two metrics of the runs; in it the arena with the "
-       "smallest layout that does it reliably, and in how many of its runs. A red spot is the place where "
+       "smallest layout that did it in 3 of 3 or 4 of 5 runs, and in how many of its runs so far. A red spot "
+       "is the place where "
        "the "
        "swarm broke, where the metrics are a place. These runs took part in choosing the layouts: 'gauntlet "
        "confirm --elites' simulates them with fresh seeds.",

@@ -11,7 +11,7 @@
 namespace gauntlet {
 namespace {
 
-constexpr const char* kConditionTitle = "How often it fails under each setting";
+constexpr const char* kConditionTitle = "How often it fails under each condition";
 
 struct Point {
   std::string key;  // that varies fastest
@@ -70,9 +70,9 @@ std::vector<NamedFigure> ConditionFigures(const CampaignFacts& facts) {
                                     .x_name = points.front().key,
                                     .panels = {{"failing runs, %", LinesOf(points), 0.0, 100.0}}};
   return {
-      {"failures-by-setting", kConditionTitle,
+      {"failures-by-condition", kConditionTitle,
        "The share of runs that fail at each value of the swept key; a band holds the 95 % intervals, over "
-       "cases, or over searches where there are several of a setting.",
+       "cases, or over searches where there are several of a condition.",
        [figure] { return analysis::DrawLines(figure); },
        [table = ConditionsTable(conditions)] { return table.ToCsv(); }}};
 }

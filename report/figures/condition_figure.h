@@ -8,7 +8,7 @@
 
 namespace gauntlet {
 
-// "failures-by-setting", of a campaign under several settings whose last swept key has numbers; else none.
+// "failures-by-condition", of a campaign under several settings whose last swept key has numbers; else none.
 std::vector<NamedFigure> ConditionFigures(const CampaignFacts& facts);
 
 }  // namespace gauntlet

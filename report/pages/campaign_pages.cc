@@ -1,4 +1,5 @@
 #include "report/pages/campaign_pages.h"
+#include "report/tables/conditions.h"
 
 #include <algorithm>
 
@@ -22,7 +23,8 @@ Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown
   TRY(CampaignFacts facts, ReadFacts(dir));
   CampaignPages pages{.facts = std::move(facts), .courses = {}, .maps = {}, .shown = {}, .typical = {}};
   pages.courses = CoursesOf(pages.facts);
-  pages.maps = MapsOf(pages.facts);
+  // Runs under several conditions are not counted in one map.
+  if (ConditionsOf(pages.facts.summary).size() == 1) pages.maps = MapsOf(pages.facts);
   TRY(pages.shown, ShowRuns(pages.facts, RunsToShow(pages.facts, pages.maps, most_shown)));
   const CampaignAnswers& answers = pages.facts.answers;
   const DistinctFailures distinct = DistinctFailuresOf(answers.confirmations, answers.smallest_layouts);

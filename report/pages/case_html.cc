@@ -11,6 +11,7 @@
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
@@ -40,11 +41,15 @@ std::string RunFactsHtml(const CampaignFacts& facts, const ShownRun& shown) {
   table.AddRow({"fitness", result.verdict == sim::Verdict::kCompleted ? FormatFitness(result.fitness)
                                                                       : NameOf(result.verdict)});
   if (const CaseFacts* of_case = CaseOf(facts, run)) {
-    table.AddRow({"test case", fmt::format("{} {}", of_case->individual, of_case->name)});
+    table.AddRow(
+        {"test case", fmt::format("{}{} {}", of_case->individual,
+                                  facts.plans.size() == 1 ? "" : fmt::format(" of search {}", run.search),
+                                  of_case->name)});
     table.AddRow(
         {"its runs", fmt::format("{}, of them {} total failures", of_case->runs, of_case->total_failures)});
     table.AddRow({"confirmed", ConfirmationText(of_case->confirmation)});
-    table.AddRow({"born in generation", of_case->born});
+    if (RowOf(facts.plans[run.search - 1].experiment).Breeds())
+      table.AddRow({"born in generation", of_case->born});
     table.AddRow({"obstacles", of_case->obstacles});
   }
   table.AddRow({"seed", run.seed});
@@ -61,8 +66,7 @@ std::string CommandsHtml(const CampaignFacts& facts, RunId run) {
       {.title = "Commands",
        .commands = {
            {fmt::format("gauntlet replay {} {} --svg {}.svg", dir, id, file), "See it again, bit for bit"},
-           {fmt::format("gauntlet confirm {} {}", dir, id),
-            "Does it fail with fresh seeds too, and how often?"},
+           {fmt::format("gauntlet confirm {} {}", dir, id), "How often does it fail with fresh seeds?"},
            {fmt::format("gauntlet minimise {} {}", dir, id), "Which of its obstacles does it take?"},
            {fmt::format("gauntlet blame {} {}", dir, id), "How much does each of them do?"},
            {fmt::format("gauntlet export {} --format csv --what trajectories --run {} --out {}.csv", dir, id,
@@ -77,7 +81,7 @@ std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const Shown
   const std::string page_id = IdOfRun(number, id);
   std::string html = fmt::format(
       "<section class=\"page case\" id=\"{}\">\n<h2>Run {}</h2>\n<p class=\"soft\">{} &middot; <a "
-      "href=\"#failures\">all failures</a></p>\n",
+      "href=\"#failures\">all that is shown</a></p>\n",
       page_id, proto::RunText(id), Html(facts.directory));
   if (!shown.trouble.empty())
     html += fmt::format("<ul class=\"notes\"><li>{}</li></ul>\n", Html(shown.trouble));

@@ -12,6 +12,7 @@
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
+#include "report/tables/conditions.h"
 
 namespace gauntlet {
 namespace {
@@ -81,9 +82,10 @@ std::string AllCasesHtml(const CampaignPages& pages, std::size_t number) {
   const Table table =
       CaseTable(pages.facts, kMostCases, [&](RunId run) { return pages.LinkTo(number, run); });
   return fmt::format(
-      "<h3>Test cases</h3>\n<p>A row for each test case, the toughest first: its number, how its runs ended, "
-      "and "
-      "its toughest run. A run that has a replay here is a link.</p>\n"
+      "<h3>Test cases</h3>\n<p>A row for each test case of each search, the toughest first: its number, how "
+      "its runs "
+      "ended, and its toughest run. Copies of a layout have rows of their own. A run that has a replay here "
+      "is a link.</p>\n"
       "<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The toughest {} of "
       "{}.</p>{}</div>\n",
       number, table.size(), FormatCount(pages.facts.cases.size()), table.ToHtml());
@@ -138,7 +140,8 @@ std::string ToughestRunsHtml(const CampaignPages& pages, std::size_t number) {
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
   std::string html = CampaignHeading(pages.facts);
   if (pages.facts.cases.empty()) return html + "<p>There is no run yet.</p>\n";
-  if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
+  if (pages.maps.empty() && ConditionsOf(pages.facts.summary).size() == 1)
+    html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
   for (const NamedFigure& figure : ArchiveFigures(pages.facts))
     html += FigureHtml(figure, pages.facts.directory);
   html += DistinctFailuresHtml(pages, number) + MinimisedCasesHtml(pages, number);

@@ -105,6 +105,7 @@ std::string CommandsHtml(const CampaignFacts& facts) {
   const std::string dir = PastedPath(facts.directory);
   Section section{.title = "Commands"};
   for (NextCommand& one : NextCommandsOf(facts.summary, facts.answers, "gauntlet", facts.directory)) {
+    if (one.command == ConfirmCommand(facts.summary, "gauntlet", facts.directory)) continue;  // stands above
     one.purpose.front() = static_cast<char>(std::toupper(one.purpose.front()));
     section.commands.push_back(std::move(one));
   }
@@ -159,8 +160,9 @@ std::string ConditionsHtml(const CampaignFacts& facts) {
   constexpr std::size_t kMostConditions = 100;
   const std::vector<Condition> conditions = ConditionsOf(facts.summary);
   if (conditions.size() < 2) return "";
-  std::string html = "<h3>How often it fails under each setting</h3>\n";
+  std::string html;
   for (const NamedFigure& figure : ConditionFigures(facts)) html += FigureHtml(figure, facts.directory);
+  if (html.empty()) html = "<h3>How often it fails under each condition</h3>\n";
   return html + ConditionsTable(conditions).First(kMostConditions).ToHtml();
 }
 
@@ -202,10 +204,11 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
       TestedHtml(facts), ProvenanceHtml(facts));
   if (!of_settings) html += CoursesHtml(pages);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
-  return html + fmt::format(
-                    "<details><summary>The whole experiment, as it was resolved</summary><pre>{}</pre>"
-                    "</details>\n",
-                    HtmlLines(facts.experiment_toml));
+  return html + fmt::format("<details><summary>{}, as it was resolved</summary><pre>{}</pre></details>\n",
+                            facts.plans.size() == 1
+                                ? std::string("The whole experiment")
+                                : fmt::format("The first of the {} experiments", facts.plans.size()),
+                            HtmlLines(facts.experiment_toml));
 }
 
 }  // namespace gauntlet

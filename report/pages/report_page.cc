@@ -73,7 +73,7 @@ std::string NavigationHtml(const Report& report, const OtherPages& others) {
   std::string html = "<nav aria-label=\"Pages\">\n" + (ComparisonFirst(report) ? comparison : "") +
                      "<a href=\"#overview\">Overview</a>\n<a href=\"#failures\">Failures</a>\n";
   if (const std::string first = FirstCase(report); !first.empty())
-    html += fmt::format("<a href=\"#{}\" data-page=\"case\">Runs</a>\n", first);
+    html += fmt::format("<a href=\"#{}\" data-page=\"case\">A run</a>\n", first);
   if (!ComparisonFirst(report)) html += comparison;
   if (!others.parameters.empty()) html += "<a href=\"#parameters\">Parameters</a>\n";
   if (report.served) html += "<a href=\"#live\">Live</a>\n";

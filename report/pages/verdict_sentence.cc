@@ -8,6 +8,7 @@
 #include "proto/run_text.h"
 #include "report/pages/campaign_pages.h"
 #include "report/tables/conditions.h"
+#include "report/tables/summary_tables.h"
 #include "study/fits/fit_text.h"
 
 namespace gauntlet {
@@ -45,12 +46,20 @@ std::string Toughest(const CampaignFacts& facts) {
   if (const Confirmation* one = ToughestOf(facts.answers.confirmations))
     return fmt::format(" The toughest test case, that of run {}, failed in {} runs with fresh seeds.",
                        proto::RunText(one->run), OutOf(one->tally));
-  const auto toughest = std::ranges::find_if(
-      facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.toughest != 0; });
-  if (toughest == facts.cases.end()) return "";
-  return fmt::format(" The toughest test case, that of run {}, made the swarm fail in {} of {} runs.",
-                     proto::RunText(toughest->toughest), FormatCount(toughest->total_failures),
-                     FormatCount(toughest->runs));
+  const auto toughest = ToughestCaseOf(facts.summary);
+  if (!toughest || toughest->member->failing_runs == 0) return "";
+  const PopulationMember& member = *toughest->member;
+  const std::string run = proto::RunText(toughest->run);
+  const std::string fails =
+      fmt::format("{} of {} runs", FormatCount(member.failing_runs), FormatCount(member.runs.size()));
+  const SearchSummary* only = facts.summary.OnlySearch();
+  if (only != nullptr && !only->archive.failures.empty())
+    return fmt::format(" The smallest layout that breaks it, that of run {}, has {} and made it fail in {}.",
+                       run, Counted(member.genome.size(), "obstacle"), fails);
+  return toughest->as_tough == 1
+             ? fmt::format(" The toughest test case, that of run {}, made it fail in {}.", run, fails)
+             : fmt::format(" One of the {} toughest test cases, that of run {}, made it fail in {}.",
+                           FormatCount(toughest->as_tough), run, fails);
 }
 
 std::string Confirmed(const CampaignFacts& facts) {
@@ -81,7 +90,7 @@ std::string CourseOf(const CampaignPages& pages) {
   if (const std::vector<Condition> conditions = ConditionsOf(summary); conditions.size() > 1) {
     const auto broke =
         std::ranges::count_if(conditions, [](const Condition& one) { return one.failing_runs > 0; });
-    return fmt::format("The {} broke under {} of {} settings: {} of the runs failed.{}", SwarmOf(facts),
+    return fmt::format("The {} broke under {} of {} conditions: {} of the runs failed.{}", SwarmOf(facts),
                        broke, conditions.size(), RangeOf(conditions), Confirmed(facts));
   }
   const double share = static_cast<double>(summary.failing_runs) / static_cast<double>(summary.runs_done);
@@ -97,6 +106,8 @@ std::string VerdictOf(const CampaignPages& pages) {
   const std::string course = CourseOf(pages);
   if (facts.summary.failing_runs == 0 || !HasBaseline(facts.plans.front().experiment.search.algorithm))
     return course;
+  const bool several = ConditionsOf(facts.summary).size() > 1;
+  if (several && facts.answers.baselines.empty()) return course;  // one of them may be the empty arena
   const std::string baseline = InWords(facts.answers.baselines, "gauntlet", facts.directory);
   return Matters(facts.answers.baselines) ? baseline + " " + course : course + " " + baseline;
 }

@@ -95,14 +95,13 @@ std::vector<Condition> ConditionsOf(const CampaignSummary& summary) {
 Table ConditionsTable(const std::vector<Condition>& conditions) {
   const bool several =
       std::ranges::any_of(conditions, [](const Condition& one) { return one.searches.size() > 1; });
-  Table table({{"settings", "settings"},
-               {several ? ">searches" : "", "searches"},
+  Table table({{"condition", "settings"},
+               several ? Column(">searches", "searches") : ForPrograms("searches"),
                {">failing runs", "k n"},
                {">share", "share"},
                {"95 %", "interval"}});
   for (const Condition& one : conditions) {
-    table.AddRow({one.settings, several ? Cell(one.searches.size()) : Cell("", one.searches.size()),
-                  OutOfCell(one.failing_runs, one.runs),
+    table.AddRow({one.settings, one.searches.size(), OutOfCell(one.failing_runs, one.runs),
                   Cell(std::isnan(one.share) ? "-" : fmt::format("{:.1f} %", 100.0 * one.share),
                        NumberValue(one.share)),
                   one.interval ? PercentCell(*one.interval) : Cell()});

@@ -1,12 +1,12 @@
 #include "report/tables/next_commands.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "proto/run_text.h"
 #include "report/tables/conditions.h"
@@ -19,29 +19,19 @@ namespace {
 // The command up to the directory: "gauntlet confirm campaigns/first".
 using Begin = std::function<std::string(const char* command)>;
 
-// The toughest case of all searches, in its latest run; of an archive its smallest failure.
 std::optional<NextCommand> ShowToughest(const CampaignSummary& summary, const Begin& begin) {
+  const std::optional<ToughestCase> toughest = ToughestCaseOf(summary);
+  if (!toughest) return std::nullopt;
   const SearchSummary* only = summary.OnlySearch();
-  if (only != nullptr && !only->archive.failures.empty()) {
-    const PopulationMember& smallest = *SmallestFirst(*only).front();
-    if (smallest.runs.empty()) return std::nullopt;
-    return NextCommand{fmt::format("{} {} --svg case-{}.svg", begin("replay"),
-                                   proto::RunText(smallest.runs.front()), smallest.id),
-                       "see what happens in the smallest failure"};
-  }
-  const PopulationMember* best = nullptr;
-  for (const SearchSummary& search : summary.searches) {
-    for (const PopulationMember& member : search.population) {
-      if (!std::isfinite(member.fitness) || member.runs.empty()) continue;
-      if (best == nullptr || member.fitness < best->fitness) best = &member;
-    }
-  }
-  if (best == nullptr) return std::nullopt;
-  const RunId run = best->runs.back();
+  const std::string file =
+      only != nullptr ? fmt::format("case-{}", toughest->member->id) : proto::RunFileName(toughest->run);
+  const bool smallest = only != nullptr && !only->archive.failures.empty();
   return NextCommand{
-      fmt::format("{} {} --svg {}.svg", begin("replay"), proto::RunText(run),
-                  only != nullptr ? fmt::format("case-{}", best->id) : proto::RunFileName(run)),
-      "see what happened in the toughest case"};
+      fmt::format("{} {} --svg {}.svg", begin("replay"), proto::RunText(toughest->run), file),
+      smallest ? "see what happens in the smallest failure"
+      : toughest->as_tough > 1
+          ? fmt::format("see what happened in one of the {} toughest cases", FormatCount(toughest->as_tough))
+          : "see what happened in the toughest case"};
 }
 
 }  // namespace
@@ -76,12 +66,13 @@ std::vector<NextCommand> NextCommandsOf(const CampaignSummary& summary, const Ca
                         "which of its obstacles does the toughest case take?"});
     commands.push_back({fmt::format("{} {}", begin("blame"), run), "how much does each of them do?"});
   }
-  if (const std::vector<Condition> conditions = ConditionsOf(summary); conditions.size() > 1) {
+  const std::vector<Condition> conditions = ConditionsOf(summary);
+  if (conditions.size() > 1 && conditions.size() == summary.searches.size()) {
     const std::string place = PastedPath(directory);
     commands.push_back(
         {fmt::format("{0} compare {1}:search:{2} {1}:search:{3}", program, place,
                      conditions.front().searches.front() + 1, conditions.back().searches.front() + 1),
-         "do the first and the last setting differ?"});
+         "do the first and the last condition differ?"});
   }
   return commands;
 }

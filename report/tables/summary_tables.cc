@@ -86,8 +86,25 @@ std::vector<const PopulationMember*> SmallestFirst(const SearchSummary& summary)
   return members;
 }
 
+std::optional<ToughestCase> ToughestCaseOf(const CampaignSummary& summary) {
+  const SearchSummary* only = summary.OnlySearch();
+  if (only != nullptr && !only->archive.failures.empty()) {
+    const PopulationMember& smallest = *SmallestFirst(*only).front();
+    if (smallest.runs.empty()) return std::nullopt;
+    return ToughestCase{&smallest, smallest.runs.front()};
+  }
+  std::optional<ToughestCase> toughest;
+  for (const SearchSummary& search : summary.searches) {
+    for (const PopulationMember& member : search.population) {
+      if (!std::isfinite(member.fitness) || member.runs.empty()) continue;
+      if (toughest && member.fitness == toughest->member->fitness) ++toughest->as_tough;
+      if (!toughest || member.fitness < toughest->member->fitness) toughest = {&member, member.runs.back()};
+    }
+  }
+  return toughest;
+}
+
 void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table) {
-  const SearchRow* search = only == nullptr ? nullptr : FindSearch(only->search);
   const SearchProgress& progress = tally.progress;
   if (only != nullptr && progress.generations > 1)
     table.AddRow({"generations", fmt::format("{} of {}", progress.generation, progress.generations)});
@@ -97,14 +114,16 @@ void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table)
                                  : fmt::format(", {} of them without a result (crashed, hung, refused)",
                                                FormatCount(tally.runs_failed)))});
   table.AddRow({"test cases", fmt::format("{} different", FormatCount(tally.distinct_individuals))});
-  table.AddRow(
-      {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
-                              FormatFitness(tally.fitness.lowest()), FormatFitness(tally.fitness.mean()),
-                              FormatFitness(tally.fitness.highest()),
-                              NameOf(search == nullptr ? Individuals::kCases : search->individuals))});
-  if (only != nullptr && !only->failing.empty()) {
+  if (only != nullptr) {
+    const SearchRow* search = FindSearch(only->search);
     table.AddRow(
-        {"failing", fmt::format("{}: {}", RunsText(tally.failing_runs, tally.runs_done), only->failing)});
+        {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
+                                FormatFitness(tally.fitness.lowest()), FormatFitness(tally.fitness.mean()),
+                                FormatFitness(tally.fitness.highest()),
+                                NameOf(search == nullptr ? Individuals::kCases : search->individuals))});
+    if (!only->failing.empty())
+      table.AddRow(
+          {"failing", fmt::format("{}: {}", RunsText(tally.failing_runs, tally.runs_done), only->failing)});
   }
   table.AddRow({"total failures", RunsText(tally.total_failures, tally.runs_done)});
   if (only == nullptr) return;
@@ -146,8 +165,9 @@ Table SearchesTable(const CampaignSummary& summary, std::size_t most) {
   constexpr std::size_t kShownDigits = 16;
   const bool generations = std::ranges::any_of(
       summary.searches, [](const SearchSummary& one) { return one.progress.generations > 1; });
-  Table table({">search", "settings", generations ? ">generation" : ForPrograms(""), ">runs", ">best",
-               ">mean", ">total failures", OnTerminals("state hash"), OnPages("finished")});
+  Table table({">search", "settings", generations ? ">generation" : ForPrograms(""), ">runs",
+               generations ? ">best at the end" : ">best", generations ? ">mean at the end" : ">mean",
+               ">total failures", OnTerminals("state hash"), OnPages("finished")});
   for (const SearchSummary& one : summary.searches) {
     if (table.size() == most) break;
     table.AddRow({table.size() + 1, one.settings,
@@ -175,10 +195,11 @@ Table GenerationTable(const SearchSummary& summary) {
 }
 
 Table PopulationTable(const std::vector<const PopulationMember*>& members, bool named) {
+  const bool bred = std::ranges::any_of(members, [](const auto* one) { return one->birth_generation > 1; });
   Table table({{">test case", "id"},
                {">fitness", "fitness"},
                {">obstacles"},
-               {">born in generation", "birth_generation"},
+               bred ? Column(">born in generation", "birth_generation") : ForPrograms("birth_generation"),
                ForPrograms("parents"),
                ForPrograms("genome"),
                {">runs", "runs"},
@@ -209,7 +230,7 @@ Table ArchiveTable(const SearchSummary& summary, const std::string& replay) {
                                  {">failed", "k n"},          ForPrograms("interval"),
                                  ForPrograms("middle")};
   for (const controllers::DescriptorAxis& axis : summary.archive.axes)
-    columns.emplace_back(">" + axis.metric);
+    columns.emplace_back(">mean " + axis.metric);
   columns.insert(columns.end(), {{">run", "run"}, {""}});
   Table table(columns);
   std::vector<ArchivedFailure> failures = summary.archive.failures;

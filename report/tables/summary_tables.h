@@ -1,6 +1,8 @@
 // What a campaign's summary says in tables.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,17 @@ const PopulationMember& MemberOf(const SearchSummary& summary, const ArchivedFai
 // The archive's failures, those with the fewest and shortest obstacles first.
 std::vector<const PopulationMember*> SmallestFirst(const SearchSummary& summary);
 
-// Facts of one search, or of all (`only` is nullptr), added to a table of names and texts.
+// The case that a campaign points at: the toughest of the populations, of an archive its smallest failure.
+struct ToughestCase {
+  const PopulationMember* member = nullptr;
+  RunId run = 0;             // its latest; of an archive that in which it failed first
+  std::size_t as_tough = 1;  // cases with the same fitness, it included
+};
+// None before the first result.
+std::optional<ToughestCase> ToughestCaseOf(const CampaignSummary& summary);
+
+// Facts of one search, or of all (`only` is nullptr: without a fitness, which each has of its own), added to
+// a table of names and texts.
 void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table);
 // Of a campaign whose runs start a program of the user's: whether they end the same once more.
 void AddReproducibility(const CampaignSummary& summary, Table& table);

@@ -21,7 +21,7 @@ TEST(RunText, ListsOfRunsAreRanges) {
   EXPECT_EQ(RunRanges({kSecondSearch + 7, 8, 3, 7, 4, 9}), "3, 4, 7 to 9, 2:7");
   std::vector<RunId> apart;
   for (RunId run = 1; run < 40; run += 2) apart.push_back(run);
-  EXPECT_EQ(RunRanges(apart), "1, 3, 5, 7, 9, 11, 13, 15, 17, 19 and 10 more");
+  EXPECT_EQ(RunRanges(apart), "1, 3, 5, 7, 9, 11, 13, 15, 17, 19 and 10 more runs");
   EXPECT_EQ(RunFileName(15), "run-15");
   EXPECT_EQ(RunFileName(kSecondSearch + 15), "run-2-15") << "no colon, which scp takes for a host";
 }

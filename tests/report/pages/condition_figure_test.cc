@@ -24,7 +24,7 @@ std::vector<NamedFigure> FiguresOfSweep(const std::vector<std::string>& settings
 TEST(ConditionFigure, IsDrawnOverTheNumbersOfTheKeyThatVariesFastest) {
   const auto figures = FiguresOfSweep({"a=x, b=1", "a=x, b=2.5", "a=y, b=1", "a=y, b=2.5"});
   ASSERT_THAT(figures, SizeIs(1));
-  EXPECT_EQ(figures[0].name, "failures-by-setting");
+  EXPECT_EQ(figures[0].name, "failures-by-condition");
   const std::string svg = figures[0].svg();
   EXPECT_THAT(svg, HasSubstr(">b<"));
   for (const char* line : {"a=x", "a=y"}) EXPECT_THAT(svg, HasSubstr(line));

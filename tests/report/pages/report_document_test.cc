@@ -94,12 +94,12 @@ TEST(VerdictTest, SaysWhatCameOfIt) {
   CampaignPages pages = PagesWithNames("x");
   pages.facts.summary.failing_runs = 1;
   pages.facts.cases.front().total_failures = 1;
-  EXPECT_EQ(
-      VerdictOf(pages),
-      "The swarm of birds broke: it failed in 1 of 1 runs (100.0 %). The toughest test "
-      "case, that of run 1, made the swarm fail in 1 of 1 runs. How often it fails without any obstacle is "
-      "not known: "
-      "gauntlet baseline x looks.");
+  pages.facts.summary.searches.front().population = {{.id = 1, .runs = {1}, .failing_runs = 1}};
+  EXPECT_EQ(VerdictOf(pages),
+            "The swarm of birds broke: it failed in 1 of 1 runs (100.0 %). The toughest test "
+            "case, that of run 1, made it fail in 1 of 1 runs. How often it fails without any obstacle is "
+            "not known: "
+            "gauntlet baseline x looks.");
   pages.facts.summary.failing_runs = 0;
   EXPECT_EQ(VerdictOf(pages), "The swarm of birds held out: in none of 1 runs did it fail.");
   pages.facts.summary.runs_failed = 1;
