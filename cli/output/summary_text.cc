@@ -58,24 +58,24 @@ std::string Generations(const SearchSummary& summary) {
   return "\n" + GenerationTable(summary).Thinned(kMostGenerations).ToText();
 }
 
-std::vector<const PopulationMember*> Toughest(const SearchSummary& summary) {
+std::string Members(const SearchSummary& summary) {
   std::vector<const PopulationMember*> members;
   for (const PopulationMember& member : summary.population) {
     if (std::isfinite(member.fitness) && !member.runs.empty()) members.push_back(&member);
   }
-  std::ranges::stable_sort(members, {}, &PopulationMember::fitness);
-  return members;
-}
-
-std::string Members(const SearchSummary& summary) {
-  const std::vector<const PopulationMember*> members = Toughest(summary);
   if (members.empty()) return {};
+  const std::size_t count = members.size();
   const bool named = std::ranges::any_of(members, [](const auto* one) { return !one->name.empty(); });
-  const std::string title = members.size() > kMostMembers ? fmt::format("The toughest {} of {} test cases",
-                                                                        kMostMembers, members.size())
-                                                          : "The test cases, toughest first";
-  const std::vector first(
-      members.begin(), members.begin() + static_cast<std::ptrdiff_t>(std::min(kMostMembers, members.size())));
+  // They stand in one list, so that an address tells which of equal ones comes first.
+  const auto order = [](const auto* one) { return std::pair(one->fitness, one); };
+  std::vector<const PopulationMember*> first(std::min(kMostMembers, count));
+  std::ranges::partial_sort_copy(members, first, {}, order, order);
+  const auto as_tough = std::ranges::count(members, first.front()->fitness, &PopulationMember::fitness);
+  const std::string title =
+      count <= kMostMembers ? "The test cases, toughest first"
+      : static_cast<std::size_t>(as_tough) > kMostMembers
+          ? fmt::format("{} of the {} toughest of {} test cases", kMostMembers, as_tough, count)
+          : fmt::format("The toughest {} of {} test cases", kMostMembers, count);
   return fmt::format("\n{}\n{}", title, PopulationTable(first, named).ToText());
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <unordered_map>
 
 #include "controllers/registry.h"
 #include "master/campaign/state_digest.h"
@@ -92,7 +93,7 @@ struct RunsOfCase {
 
 // Everything that is told of the stored runs of a search.
 Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, SearchSummary& summary,
-               std::map<IndividualId, RunsOfCase>& runs_of) {
+               std::unordered_map<IndividualId, RunsOfCase>& runs_of) {
   const std::string_view failing = FailingOf(experiment);
   const bool needs_metrics = FailingNeedsMetrics(failing);
   std::map<std::uint32_t, GenerationSummary> generations;
@@ -147,7 +148,7 @@ Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch
   summary.statistics.insert(summary.statistics.begin(),
                             {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
 
-  std::map<IndividualId, RunsOfCase> runs_of;
+  std::unordered_map<IndividualId, RunsOfCase> runs_of;
   TRY(AddRuns(experiment, plan.id, store, summary, runs_of));
   const std::vector<Individual>& population = search->Population();
   summary.population.reserve(population.size());
