@@ -72,7 +72,7 @@ class PopulationSearch : public SearchAlgorithm {
   // "the saved search state is damaged: ..."
   static Error Damaged(const std::string& what);
 
-  const SearchSetup setup_;
+  SearchSetup setup_;
   const GenomeGenerator generator_;
   const std::uint64_t search_seed_;
   std::vector<Individual> population_;

@@ -72,8 +72,13 @@ bool RandomSearch::AtBoundary() const {
 }
 
 Status RandomSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
+  population_.reserve(setup_.cases.size());
   return Recall(history, [this](const EvaluationOutcome& outcome) {
-    Record(outcome, population_.emplace_back(Draw(population_.size() + 1)));
+    const std::size_t place = population_.size();  // whose case nobody asks for again
+    population_.push_back(place < setup_.cases.size()
+                              ? MakeIndividual(place + 1, std::move(setup_.cases[place]))
+                              : Draw(place + 1));
+    Record(outcome, population_.back());
   });
 }
 
