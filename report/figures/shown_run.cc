@@ -102,6 +102,7 @@ std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunM
   if (const SearchSummary* only = facts.summary.OnlySearch()) {
     for (const PopulationMember* one : SmallestFirst(*only)) add(one->runs.empty() ? 0 : one->runs.front());
   }
+  if (const auto toughest_case = ToughestCaseOf(facts.summary)) add(toughest_case->run);
   for (const RunMap& map : maps) {
     for (const std::vector<RunId>& row : map.toughest) {
       for (const RunId run : row) add(run);

@@ -23,7 +23,8 @@ struct ShownRun {
 };
 
 // At most `most` runs that are worth a look: of the toughest cases of the distinct failures, of cases that
-// were made smaller, of an archive's failures from the smallest on, the toughest of each field of the maps,
+// were made smaller, of an archive's failures from the smallest on, the case that commands point at, the
+// toughest of each field of the maps,
 // the first map first, then the toughest run of the toughest cases. Each once, in this order.
 std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most);
 

@@ -81,14 +81,19 @@ std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
 std::string AllCasesHtml(const CampaignPages& pages, std::size_t number) {
   const Table table =
       CaseTable(pages.facts, kMostCases, [&](RunId run) { return pages.LinkTo(number, run); });
+  const std::vector<CaseFacts>& cases = pages.facts.cases;
+  const auto as_tough = static_cast<std::size_t>(std::ranges::count(
+      cases, cases.front().fitness.mean(), [](const CaseFacts& one) { return one.fitness.mean(); }));
+  const std::string which = as_tough > table.size()
+                                ? fmt::format("{} of the {} toughest", table.size(), FormatCount(as_tough))
+                                : fmt::format("The toughest {}", table.size());
   return fmt::format(
       "<h3>Test cases</h3>\n<p>A row for each test case of each search, the toughest first: its number, how "
       "its runs "
       "ended, and its toughest run. Copies of a layout have rows of their own. A run that has a replay here "
       "is a link.</p>\n"
-      "<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The toughest {} of "
-      "{}.</p>{}</div>\n",
-      number, table.size(), FormatCount(pages.facts.cases.size()), table.ToHtml());
+      "<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">{} of {}.</p>{}</div>\n",
+      number, which, FormatCount(cases.size()), table.ToHtml());
 }
 
 }  // namespace
@@ -133,7 +138,7 @@ std::string ToughestRunsHtml(const CampaignPages& pages, std::size_t number) {
   if (thumbnails.empty()) return "";
   return fmt::format(
       "<h3>What a failure looks like</h3>\n<p>The arena from above; trajectories of robots that did well are "
-      "blue, of those that were lost red. <a href=\"#failures\">All failures</a></p>\n{}",
+      "blue, of those that were lost red. <a href=\"#failures\">More runs</a></p>\n{}",
       thumbnails);
 }
 

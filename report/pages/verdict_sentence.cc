@@ -54,8 +54,10 @@ std::string Toughest(const CampaignFacts& facts) {
       fmt::format("{} of {} runs", FormatCount(member.failing_runs), FormatCount(member.runs.size()));
   const SearchSummary* only = facts.summary.OnlySearch();
   if (only != nullptr && !only->archive.failures.empty())
-    return fmt::format(" The smallest layout that breaks it, that of run {}, has {} and made it fail in {}.",
-                       run, Counted(member.genome.size(), "obstacle"), fails);
+    return fmt::format(
+        " The smallest layout that breaks it, that of run {}, has {} and made it fail in {}, which took part "
+        "in choosing it.",
+        run, Counted(member.genome.size(), "obstacle"), fails);
   return toughest->as_tough == 1
              ? fmt::format(" The toughest test case, that of run {}, made it fail in {}.", run, fails)
              : fmt::format(" One of the {} toughest test cases, that of run {}, made it fail in {}.",

@@ -166,8 +166,9 @@ Table SearchesTable(const CampaignSummary& summary, std::size_t most) {
   const bool generations = std::ranges::any_of(
       summary.searches, [](const SearchSummary& one) { return one.progress.generations > 1; });
   Table table({">search", "settings", generations ? ">generation" : ForPrograms(""), ">runs",
-               generations ? ">best at the end" : ">best", generations ? ">mean at the end" : ">mean",
-               ">total failures", OnTerminals("state hash"), OnPages("finished")});
+               generations ? ">toughest fitness at the end" : ">toughest fitness",
+               generations ? ">mean at the end" : ">mean fitness", ">total failures",
+               OnTerminals("state hash"), OnPages("finished")});
   for (const SearchSummary& one : summary.searches) {
     if (table.size() == most) break;
     table.AddRow({table.size() + 1, one.settings,
@@ -204,7 +205,7 @@ Table PopulationTable(const std::vector<const PopulationMember*>& members, bool 
                ForPrograms("genome"),
                {">runs", "runs"},
                {">latest run"},
-               {named ? "file" : "", "name?"}});
+               {named ? "name" : "", "name?"}});
   for (const PopulationMember* one : members) {
     table.AddRow({one->id, FitnessCell(one->fitness), one->genome.size(), one->birth_generation,
                   JsonCell(IdsJson(one->parents)), JsonCell(GenomeJson(one->genome)),
