@@ -91,7 +91,7 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
   TRY(const std::vector<ExtraSet> extra, ExtraOf(options));
   if (options.question.sweeps) {
     TRY(asking.experiments, PlanSearches(options.experiment, extra, options.sweep));
-    for (const std::string& idle : IdleNoise(asking.experiments)) PrintMessage(context, idle);
+    if (!options.running.quiet) TellIdleNoise(context, asking.experiments);
     asking.experiment = asking.experiments.front().experiment;
     return asking;
   }

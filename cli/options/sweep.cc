@@ -217,7 +217,7 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   return plans;
 }
 
-std::vector<std::string> IdleNoise(const std::vector<SearchPlan>& searches) {
+void TellIdleNoise(CommandContext& context, const std::vector<SearchPlan>& searches) {
   std::map<std::string, bool> idle;  // by device
   for (const SearchPlan& plan : searches) {
     const Experiment& experiment = plan.experiment;
@@ -235,13 +235,11 @@ std::vector<std::string> IdleNoise(const std::vector<SearchPlan>& searches) {
       still = still && !has;
     }
   }
-  std::vector<std::string> sentences;
   for (const auto& [device, still] : idle) {
     if (still)
-      sentences.push_back(fmt::format("noise.{0} changes nothing: no robot of {1} has the device {0}", device,
-                                      searches.front().experiment.scenario));
+      PrintMessage(context, fmt::format("noise.{0} changes nothing: no robot of {1} has the device {0}",
+                                        device, searches.front().experiment.scenario));
   }
-  return sentences;
 }
 
 }  // namespace gauntlet

@@ -1,10 +1,10 @@
 // The searches of a new campaign: one, or those that --sweep and --seeds ask for.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "cli/command_line.h"
 #include "cli/options/options.h"
 #include "master/directory/search_plans.h"
 
@@ -18,7 +18,7 @@ namespace gauntlet {
 Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
                                              const std::vector<ExtraSet>& extra, const SweepOptions& sweep);
 
-// Noise of devices that no robot of the swarm has, a sentence each: it changes nothing.
-std::vector<std::string> IdleNoise(const std::vector<SearchPlan>& searches);
+// Says which noise changes nothing, since no robot of the swarm has the device.
+void TellIdleNoise(CommandContext& context, const std::vector<SearchPlan>& searches);
 
 }  // namespace gauntlet
