@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -121,9 +122,10 @@ Result<std::vector<Confirmation>> ExaminedCases(const std::string& campaign) {
   TRY(auto confirmations, ReadConfirmations(campaign));
   if (confirmations.empty()) return confirmations;
   TRY(const QuestionedCampaign ended_with, PopulationCases(campaign));
-  std::erase_if(confirmations, [&](const Confirmation& one) {
-    return std::ranges::none_of(ended_with.cases, [&](const auto& known) { return known.name == one.name; });
-  });
+  std::set<std::uint64_t> keys;
+  for (const CaseInQuestion& one : ended_with.cases)
+    keys.insert(ConfirmationKey(ended_with.plans[one.search].experiment, one.test_case));
+  std::erase_if(confirmations, [&](const Confirmation& one) { return !keys.contains(one.key); });
   return confirmations;
 }
 
