@@ -42,8 +42,10 @@ struct TunedParameter {
   std::vector<TunedValue> values;  // with the baseline's
 };
 struct Tuning {
+  std::string title;
   std::string experiment;
   int repeats = 0;                 // evolutions of each value
+  std::uint64_t budget = 0;        // runs of each evolution, which set its generations; 0 = none
   std::vector<std::size_t> sizes;  // of the sets of the consistency analysis, ascending
   std::string baseline_part;
   std::vector<TunedParameter> parameters;
@@ -54,8 +56,10 @@ std::string AgainPart(const std::string& part);
 // What of a study is other than its file says; "" and empty: nothing.
 struct TuningChanges {
   std::string experiment;
-  std::string repeats;            // as it was typed
-  std::vector<std::string> sets;  // "key=value", of every part that does not say otherwise
+  std::string repeats;             // as it was typed
+  std::vector<std::string> sets;   // "key=value", of every part that does not say otherwise
+  std::vector<std::string> tries;  // "key=a,b,c": the candidates, instead of the file's
+  std::string budget;              // as it was typed: runs of each evolution, which set its generations
 
   bool operator==(const TuningChanges&) const = default;
 };
@@ -122,7 +126,7 @@ struct Study {
 
 // A shipped study by its name, or a file by its path (with a '/' or ending in ".toml"). Files that it
 // includes or takes published figures from stand beside it. Errors begin with the place and name what would
-// be right. Published figures of a tuning are left out when experiment or settings are changed: they are of
+// be right. Published figures of a tuning are left out when more than its repeats is changed: they are of
 // another one. `plugins`: the SHA-256 of those that may bring controllers, which are known; those that the
 // files of its experiments name (PluginFilesOf) are made known and taken, too.
 Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes = {},

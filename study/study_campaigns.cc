@@ -95,6 +95,8 @@ Status WriteStudy(const std::string& dir, const Study& study) {
   if (const TuningChanges& changes = study.changes; changes != TuningChanges{}) {
     json["changes"] = {
         {"experiment", changes.experiment}, {"repeats", changes.repeats}, {"sets", changes.sets}};
+    if (!changes.tries.empty()) json["changes"]["tries"] = changes.tries;
+    if (!changes.budget.empty()) json["changes"]["budget"] = changes.budget;
   }
   if (!study.plugins.empty()) json["plugins"] = study.plugins;
   // The libraries first: a study whose file is there is whole.
@@ -189,9 +191,12 @@ Result<Study> OpenStudy(const std::string& dir) {
     if (!changed.is_object()) return damaged;
     changes.experiment = TextAt(changed, "experiment");
     changes.repeats = TextAt(changed, "repeats");
-    for (const nlohmann::json& set : changed.value("sets", nlohmann::json::array())) {
-      if (!set.is_string()) return damaged;
-      changes.sets.push_back(set.get<std::string>());
+    changes.budget = TextAt(changed, "budget");
+    for (const auto& [name, texts_of] : {std::pair{"sets", &changes.sets}, {"tries", &changes.tries}}) {
+      for (const nlohmann::json& one : changed.value(name, nlohmann::json::array())) {
+        if (!one.is_string()) return damaged;
+        texts_of->push_back(one.get<std::string>());
+      }
     }
   }
   TRY(KnowPlugins(PluginsOf(dir)));

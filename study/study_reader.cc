@@ -62,11 +62,11 @@ class Reader {
       });
     });
     for (const StudyAnalysis& tuning : study_.analyses) {
-      if (!tuning.tuning || study_.changes.experiment.empty()) continue;
+      if (!tuning.tuning || (study_.changes.experiment.empty() && study_.changes.tries.empty())) continue;
       const bool is_of_another = tuning.tuning->experiment != tuning.Key("experiment");
       const std::string& experiment = study_.parts.front().experiment.name;
       if (is_of_another) study_.name = "tune-" + experiment;
-      if (is_of_another || study_.description.empty())
+      if (is_of_another || study_.description.empty() || !study_.changes.tries.empty())
         study_.description = "which values of the search's parameters find tougher cases for " + experiment;
     }
     return std::move(study_);
@@ -93,7 +93,8 @@ class Reader {
         TRY(table.kind == "part" ? AddPart(table) : AddAnalysis(table));
       }
     }
-    if (!study_.changes.experiment.empty() || !study_.changes.sets.empty()) return Ok{};
+    const TuningChanges repeats_alone{.repeats = study_.changes.repeats};
+    if (study_.changes != repeats_alone) return Ok{};
     for (const std::string& published : ListItems(content.top["published"])) {
       TRY(AddPublished(published, notes));
     }

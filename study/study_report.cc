@@ -17,6 +17,8 @@ std::string CommandOf(const Study& study) {
   }
   if (!changes.repeats.empty()) command += " --repeats " + changes.repeats;
   for (const std::string& set : changes.sets) command += " --set " + set;
+  for (const std::string& candidates : changes.tries) command += " --try " + candidates;
+  if (!changes.budget.empty()) command += " --budget " + changes.budget;
   return command;
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kMostRepeats = 100;
 constexpr std::size_t kMostSets = 10'000;
+constexpr std::uint64_t kLargestBudget = 1'000'000'000;
 constexpr const char* kDefaultSizes = "1, 5, 10, 20, 50, 100";
 // Every part has seeds of its own, so that sets are independent, and more repeats leave the first ones as
 // they are.
@@ -32,8 +33,9 @@ std::string ValueOf(const Experiment& experiment, const std::string& path) {
 class Expander {
  public:
   Expander(const StudyFileTable& table, const TuningChanges& changes, const Catalogue& catalogue)
-      : table_(table), catalogue_(catalogue) {
+      : table_(table), changes_(changes), catalogue_(catalogue) {
     tuning_.experiment = changes.experiment.empty() ? table.Key("experiment") : changes.experiment;
+    tuning_.title = changes.tries.empty() ? table.Key("title") : "Parameters of the search";
     sets_ = table.Sets();
     sets_.insert(sets_.end(), changes.sets.begin(), changes.sets.end());
     repeats_ = changes.repeats.empty() ? table.Key("repeats") : changes.repeats;
@@ -51,20 +53,46 @@ class Expander {
                       tuning_.experiment, search.info.name));
     }
     tuning_.baseline_part = table_.name + ".baseline";
-    AddParts(tuning_.baseline_part, sets_);
-    const auto candidates = table_.Nested("candidates");
-    if (candidates.empty()) {
-      return InvalidInput(fmt::format(
-          "{}: [tune.{}] has no candidates: write candidates.search.population = \"10, 20\" or the like",
-          table_.where, table_.name));
-    }
-    for (const auto& [key, values] : candidates) {
-      TRY(AddParameter(baseline, key, ListItems(values)));
+    TRY(AddParts(tuning_.baseline_part, sets_, table_.where));
+    TRY(const auto candidates, ReadCandidates());
+    for (const Candidates& one : candidates) {
+      TRY(AddParameter(baseline, one));
     }
     return ExpandedTuning{std::move(tuning_), std::move(parts_)};
   }
 
  private:
+  struct Candidates {
+    std::string key;
+    std::vector<std::string> values;
+    std::string where;
+  };
+
+  // Those that were typed, else those of the table.
+  Result<std::vector<Candidates>> ReadCandidates() const {
+    std::vector<Candidates> candidates;
+    for (const std::string& text : changes_.tries) {
+      const std::size_t equals = text.find('=');
+      const std::string where = "--try " + text;
+      const std::string key = text.substr(0, equals);
+      const std::string values = equals == std::string::npos ? "" : text.substr(equals + 1);
+      if (key.empty() || ListItems(values).empty())
+        return InvalidInput(where + ": give a key and the values to try, key=a,b,c");
+      if (std::ranges::count(candidates, key, &Candidates::key) > 0)
+        return InvalidInput(fmt::format("{}: {} is tried already; give all its values at once", where, key));
+      candidates.push_back({key, ListItems(values), where});
+    }
+    if (!candidates.empty()) return candidates;
+    for (const auto& [key, values] : table_.Nested("candidates"))
+      candidates.push_back({key, ListItems(values), table_.PlaceOf("candidates." + key)});
+    if (candidates.empty()) {
+      return InvalidInput(fmt::format(
+          "{}: [tune.{}] has no candidates: write candidates.search.population = \"10, 20\" or the like",
+          table_.where, table_.name));
+    }
+    return candidates;
+  }
+
   Status ReadNumbers() {
     const auto repeats = ParseNumber<int>(repeats_);
     if (!repeats || *repeats < 1 || *repeats > kMostRepeats) {
@@ -72,6 +100,15 @@ class Expander {
           fmt::format("{} {}: give a whole number from 1 to {}", repeats_place_, repeats_, kMostRepeats));
     }
     tuning_.repeats = *repeats;
+    if (!changes_.budget.empty()) {
+      const auto budget = ParseNumber<std::uint64_t>(changes_.budget);
+      if (!budget || *budget < 1 || *budget > kLargestBudget) {
+        return InvalidInput(
+            fmt::format("--budget {}: give the runs of each evolution, a whole number from 1 to {}",
+                        changes_.budget, kLargestBudget));
+      }
+      tuning_.budget = *budget;
+    }
     for (const std::string& item : ListItems(table_.Has("sizes") ? table_.Key("sizes") : kDefaultSizes)) {
       const auto size = ParseNumber<std::size_t>(item);
       const bool ascending = size && (tuning_.sizes.empty() || *size > tuning_.sizes.back());
@@ -84,8 +121,33 @@ class Expander {
     return Ok{};
   }
 
+  // The most generations of such an evolution that the budget pays for, as --set takes them.
+  Result<std::string> GenerationsOfBudget(const std::vector<std::string>& sets,
+                                          const std::string& where) const {
+    const auto runs_of = [&](std::uint64_t generations) -> Result<std::uint64_t> {
+      std::vector<std::string> all = sets;
+      all.push_back(fmt::format("search.generations={}", generations));
+      TRY(const Experiment experiment, LoadExperiment(tuning_.experiment, all, catalogue_));
+      TRY(const auto search, MakeSearch(experiment));
+      return search->Progress().evaluations_planned *
+             static_cast<std::uint64_t>(experiment.search.replicates);
+    };
+    // Every generation after the first costs the same.
+    TRY(const std::uint64_t first, runs_of(1));
+    TRY(const std::uint64_t second, runs_of(2));
+    if (tuning_.budget < first) {
+      return InvalidInput(
+          fmt::format("{}: --budget {} does not pay for the first generation, which takes {} runs", where,
+                      tuning_.budget, first));
+    }
+    return fmt::format("search.generations={}", 1 + (tuning_.budget - first) / (second - first));
+  }
+
   // The evolutions of one candidate, and the part that simulates their populations again.
-  void AddParts(const std::string& name, const std::vector<std::string>& sets) {
+  Status AddParts(const std::string& name, std::vector<std::string> sets, const std::string& where) {
+    if (tuning_.budget > 0) {
+      TRY(sets.emplace_back(), GenerationsOfBudget(sets, where));
+    }
     const std::uint64_t first = kSeedsOfAPart * (parts_.size() / 2) + 1;
     const auto add = [&](const std::string& part, const std::string& group,
                          const std::vector<std::pair<std::string, std::string>>& keys) -> StudyFileTable& {
@@ -106,14 +168,16 @@ class Expander {
          {"from", name},
          {"seeds", fmt::format("{}", kFirstAgain + first)},
          {"replicates", "1"}});
+    return Ok{};
   }
 
-  Status AddParameter(const Experiment& baseline, const std::string& key,
-                      const std::vector<std::string>& candidates) {
-    const std::string where = table_.PlaceOf("candidates." + key);
+  Status AddParameter(const Experiment& baseline, const Candidates& tried) {
+    const auto& [key, candidates, where] = tried;
     if (key == "seed" || key == "scenario" || key == "search.algorithm" || key == "name") {
       return InvalidInput(fmt::format("{}: {} is no parameter of a search", where, key));
     }
+    if (tuning_.budget > 0 && key == "search.generations")
+      return InvalidInput(where + ": with --budget the number of generations follows from the runs");
     const SearchInfo& search = RowOf(baseline).info;
     if (key.starts_with("search.") && !Reads(search, key)) {
       // An unknown key is an error of the experiment, which says what was meant.
@@ -136,7 +200,7 @@ class Expander {
           is_baseline ? tuning_.baseline_part : fmt::format("{}.{}={}", table_.name, key, value);
       parameter.values.push_back({value, part});
       if (is_baseline) continue;
-      AddParts(part, SetsWith(key, candidate));
+      TRY(AddParts(part, SetsWith(key, candidate), where));
     }
     if (!has_baseline)
       parameter.values.insert(parameter.values.begin(), {parameter.baseline, tuning_.baseline_part});
@@ -159,6 +223,7 @@ class Expander {
   }
 
   const StudyFileTable& table_;
+  const TuningChanges& changes_;
   const Catalogue& catalogue_;
   std::string repeats_;
   std::string repeats_place_;

@@ -158,6 +158,10 @@ void AddTables(const Tuning& tuning, const TuningResult& result, StudySection& s
       "from 0.71 on, and from 0.29 downwards. {} evolutions of each value; p by Mann and Whitney's test "
       "({}).",
       tuning.repeats, result.p_by));
+  if (tuning.budget > 0) {
+    section.sentences.push_back(fmt::format("Each evolution has as many generations as {} runs pay for.",
+                                            FormatCount(tuning.budget)));
+  }
   for (const TriedParameter& one : result.parameters)
     section.sentences.push_back(fmt::format("{}: {}", one.key, one.evidence));
   section.sentences.push_back(result.enough_in_words);
@@ -173,7 +177,7 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
   const Tuning& tuning = *analysis.tuning;
   StudySection section;
   section.name = analysis.name;
-  section.title = analysis.Key("title");
+  section.title = tuning.title;
   TRY(const auto baseline, EvolutionsOf(runs, tuning.baseline_part, section));
   TuningResult& result = section.tuning.emplace();
   std::vector<std::vector<double>> changed;

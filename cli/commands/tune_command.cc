@@ -17,6 +17,8 @@ struct TuneOptions {
   std::string candidates;
   std::string repeats;
   std::vector<std::string> sets;
+  std::vector<std::string> tries;
+  std::string budget;
   StudyStartOptions start;
 };
 
@@ -31,14 +33,15 @@ Result<Study> LoadTuning(const TuneOptions& options) {
   const std::vector<std::string> shipped = ShippedStudies();
   const std::string own = "tune-" + options.experiment;
   if (options.candidates.empty() && std::ranges::count(shipped, own) > 0)
-    return LoadStudy(own, {"", options.repeats, options.sets}, plugins);
+    return LoadStudy(own, {"", options.repeats, options.sets, options.tries, options.budget}, plugins);
   std::string experiment = options.experiment;
   // A file is found again by whoever goes on, from wherever that is.
   std::error_code error;
   const bool is_file = experiment.find('/') != std::string::npos || experiment.ends_with(".toml");
   if (is_file) experiment = std::filesystem::absolute(experiment, error).string();
-  Result<Study> study = LoadStudy(options.candidates.empty() ? kCandidates : options.candidates,
-                                  {experiment, options.repeats, options.sets}, plugins);
+  Result<Study> study =
+      LoadStudy(options.candidates.empty() ? kCandidates : options.candidates,
+                {experiment, options.repeats, options.sets, options.tries, options.budget}, plugins);
   if (study && !IsTuning(*study)) {
     return InvalidInput(fmt::format("--candidates {}: the study has no table [tune.NAME] with candidates",
                                     options.candidates));
@@ -61,6 +64,12 @@ void AddTune(CommandParser& parser) {
   AddValue(command, "--candidates", "STUDY", options.candidates,
            "the values to try: a shipped study or a TOML file with a table [tune.NAME] (default: "
            "tune-EXPERIMENT if there is one, else tune-flocking)");
+  AddValue(command, "--try", "KEY=A,B,C", options.tries,
+           "values of one key to try, instead of the study's; repeatable");
+  AddValue(
+      command, "--budget", "RUNS", options.budget,
+      "give each evolution as many generations as so many runs pay for, so that values which cost more a "
+      "generation are compared at equal cost (default: equal generations)");
   AddValue(
       command, "--repeats", "N", options.repeats,
       "number of evolutions for each value, 1 to 100 (default: that of the study, 20 in the shipped ones)");
@@ -83,6 +92,7 @@ resume DIR' after it was stopped or killed. It writes robustness.svg and consist
 Examples:
   gauntlet tune flocking --dry-run
   gauntlet tune flocking --repeats 5 --dir campaigns/tuning
+  gauntlet tune flocking --try search.population=10,20,50 --budget 1000 --repeats 5 --dir campaigns/population
   gauntlet tune my-experiment.toml --candidates my-candidates.toml --markdown tuning.md)");
 }
 

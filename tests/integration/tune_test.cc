@@ -97,6 +97,16 @@ TEST_F(TuneTest, EndsTheSameWhateverMomentItIsKilledAt) {
   EXPECT_EQ(TuningOf(last.out), TuningOf(whole.out));
 }
 
+TEST_F(TuneTest, GoesOnWithTheValuesThatWereTyped) {
+  const std::vector<std::string> more = {"--try", "search.population=4,8", "--budget", "16"};
+  const ProcessResult run = Gauntlet(Command("t", more));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json parameter = TuningOf(run.out)["parameters"][0];
+  EXPECT_EQ(parameter["key"], "search.population");
+  for (const json& value : parameter["values"]) EXPECT_EQ(value["simulations"], 16);
+  EXPECT_EQ(Gauntlet({"resume", scratch_ / "t", "--json", "--quiet"}).out, run.out);
+}
+
 TEST_F(TuneTest, ADryRunMakesNothing) {
   const ProcessResult dry = Gauntlet(Command("t", {"--dry-run"}));
   ASSERT_EQ(dry.exit_code, 0) << dry.err;

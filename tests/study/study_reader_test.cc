@@ -5,12 +5,14 @@
 #include <map>
 #include <set>
 
+#include "search/search_table.h"
 #include "study/study.h"
 
 namespace gauntlet {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::SizeIs;
 
 // A study of one file, with `rest` behind its first part.
@@ -167,7 +169,8 @@ TEST(StudyReader, ATuningIsABaselineAndAPartForEveryOtherValueWithSeedsOfItsOwn)
 }
 
 TEST(StudyReader, ATuningTakesAnotherExperimentRepeatsAndSettings) {
-  const auto study = ReadTuning("", {"foraging", "2", {"search.population=30"}});
+  const auto study =
+      ReadTuning("", {.experiment = "foraging", .repeats = "2", .sets = {"search.population=30"}});
   ASSERT_TRUE(study.ok()) << study.error().message;
   EXPECT_EQ(study->name, "tune-foraging");
   EXPECT_THAT(study->parts.front().seeds, SizeIs(2));
@@ -176,11 +179,59 @@ TEST(StudyReader, ATuningTakesAnotherExperimentRepeatsAndSettings) {
 }
 
 TEST(StudyReader, ATuningIsCalledAsItsFileSaysUnlessItIsOfAnotherExperiment) {
-  const auto own = ReadTuning("", {"flocking", "2", {}});
+  const auto own = ReadTuning("", {.experiment = "flocking", .repeats = "2"});
   ASSERT_TRUE(own.ok()) << own.error().message;
   EXPECT_EQ(own->name, "t");
   EXPECT_EQ(own->description, "which values of the search's parameters find tougher cases for flocking");
-  EXPECT_EQ(ReadTuning("", {"foraging", "2", {}})->name, "tune-foraging");
+  EXPECT_EQ(ReadTuning("", {.experiment = "foraging", .repeats = "2"})->name, "tune-foraging");
+}
+
+TEST(StudyReader, ATuningTriesTheValuesThatWereTyped) {
+  const auto study = ReadTuning("", {.tries = {"search.population=10,40"}});
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  EXPECT_THAT(study->parts, SizeIs(6));
+  const Tuning& tuning = *study->analyses.front().tuning;
+  ASSERT_THAT(tuning.parameters, SizeIs(1));
+  EXPECT_THAT(tuning.parameters[0].values,
+              ElementsAre(Field(&TunedValue::value, "20"), Field(&TunedValue::value, "10"),
+                          Field(&TunedValue::value, "40")));
+  EXPECT_EQ(tuning.title, "Parameters of the search");
+  EXPECT_EQ(TuningError("", {.tries = {"search.population"}}),
+            "--try search.population: give a key and the values to try, key=a,b,c");
+  EXPECT_EQ(TuningError("", {.tries = {"=1"}}), "--try =1: give a key and the values to try, key=a,b,c");
+  EXPECT_EQ(TuningError("", {.tries = {"genome.genes=1", "genome.genes=2"}}),
+            "--try genome.genes=2: genome.genes is tried already; give all its values at once");
+  EXPECT_EQ(
+      TuningError("", {.tries = {"search.popluation=10"}}),
+      "--try search.popluation=10: --set search.popluation=10: unknown key 'search.popluation'; did you "
+      "mean 'search.population'?");
+}
+
+TEST(StudyReader, ABudgetOfATuningSetsTheGenerationsOfEachValue) {
+  const auto study = ReadTuning("", {.tries = {"search.population=10,40"}, .budget = "200"});
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  for (const auto& [part, population] : {std::pair(0, 20), {2, 10}, {4, 40}}) {
+    const Experiment& experiment = study->parts[part].experiment;
+    EXPECT_EQ(experiment.search.population, population);
+    const auto search = MakeSearch(experiment);
+    EXPECT_EQ((*search)->Progress().evaluations_planned, 200U) << population;
+  }
+  EXPECT_EQ(ReadTuning("", {.tries = {"search.population=10"}, .budget = "219"})
+                ->parts[0]
+                .experiment.search.generations,
+            ReadTuning("", {.tries = {"search.population=10"}, .budget = "200"})
+                ->parts[0]
+                .experiment.search.generations);
+  EXPECT_EQ(TuningError("", {.tries = {"search.population=10,40"}, .budget = "39"}),
+            "--try search.population=10,40: --budget 39 does not pay for the first generation, which takes "
+            "40 runs");
+  EXPECT_EQ(TuningError("", {.tries = {"search.generations=10,40"}, .budget = "100"}),
+            "--try search.generations=10,40: with --budget the number of generations follows from the runs");
+  for (const char* bad : {"0", "-1", "1e3", "1000000001"}) {
+    EXPECT_EQ(TuningError("", {.budget = bad}),
+              std::string("--budget ") + bad +
+                  ": give the runs of each evolution, a whole number from 1 to 1000000000");
+  }
 }
 
 TEST(StudyReader, SaysWhatIsWrongWithATuning) {
@@ -202,8 +253,8 @@ TEST(StudyReader, SaysWhatIsWrongWithATuning) {
   EXPECT_EQ(TuningError("set.search.algorithm = \"random\"\n"),
             "flocking: search.algorithm = \"random\" has no population: tuning is for genetic and "
             "steady-state searches");
-  EXPECT_EQ(TuningError("", {"", "101", {}}), "--repeats 101: give a whole number from 1 to 100");
-  EXPECT_EQ(TuningError("", {"", "", {"search.generations=0"}}),
+  EXPECT_EQ(TuningError("", {.repeats = "101"}), "--repeats 101: give a whole number from 1 to 100");
+  EXPECT_EQ(TuningError("", {.sets = {"search.generations=0"}}),
             "--set search.generations=0: search.generations = 0 is out of range, allowed 1 to 1000000");
 }
 
