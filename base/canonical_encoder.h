@@ -4,6 +4,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ class CanonicalEncoder {
     Uint(value.size());
     bytes_.append(value);
   }
+  // Room for so many more bytes.
+  void Reserve(std::size_t bytes) { bytes_.reserve(bytes_.size() + bytes); }
   const std::string& bytes() const { return bytes_; }
   std::string Take() { return std::move(bytes_); }
 

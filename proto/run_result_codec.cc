@@ -111,6 +111,7 @@ void ToProto(const sim::RunResult& result, Ways ways, v1::RunResult& wire) {
   wire.set_trajectory_hash(result.trajectory_hash);
   wire.set_hash(result.hash);
   wire.set_cpu_seconds(result.cpu_seconds);
+  if (result.contacts >= 0) wire.set_contacts(result.contacts);
   if (!result.without_ways && (ways == Ways::kInclude || !HasWays(result))) return;
   wire.set_without_ways(true);
   wire.set_hash_without_ways(result.hash_without_ways);
@@ -174,6 +175,7 @@ Result<sim::RunResult> Decode(std::string_view bytes, Trust trust) {
     TRY(TrajectoryFromProto(message.trajectory(), result));
   }
   result.cpu_seconds = message.cpu_seconds();
+  if (message.has_contacts()) result.contacts = message.contacts();
   result.without_ways = message.without_ways();
   result.hash_without_ways = message.hash_without_ways();
   if (result.without_ways && HasWays(result))

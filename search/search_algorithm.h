@@ -33,6 +33,14 @@ struct EvaluationRequest {
   std::shared_ptr<const sim::RunSettings> settings = nullptr;
 };
 
+// What a run does beside what it is judged by.
+struct SideEffects {
+  double contacts = -1.0;  // that robots began; -1: nobody has counted
+  double seconds = 0.0;    // simulated
+  double distance = 0.0;   // m, driven by all robots
+};
+SideEffects SideEffectsOf(const sim::RunResult& result);
+
 // What came of one run.
 struct RunOutcome {
   sim::Verdict verdict = sim::Verdict::kCompleted;
@@ -41,6 +49,7 @@ struct RunOutcome {
   int failure_type = -1;  // of the scenario; -1 = none or not classified
   // By name, in the scenario's order. Only for a search that WantsMetrics.
   std::vector<std::pair<std::string, double>> metrics = {};
+  SideEffects effects = {};                    // likewise
   std::vector<sim::RobotSummary> robots = {};  // only for a search that WantsWays
 
   bool completed() const { return verdict == sim::Verdict::kCompleted; }
@@ -98,6 +107,7 @@ using History = std::function<Status(const std::function<void(const EvaluationOu
 
 class FitRounds;
 class MarginStages;
+class RepairCourse;
 
 class SearchAlgorithm {
  public:
@@ -114,11 +124,15 @@ class SearchAlgorithm {
   virtual SearchProgress Progress() const = 0;
   // The current population, in a fixed order (all cases told so far for searches without survivors).
   virtual const std::vector<Individual>& Population() const = 0;
+  // The same from a search that is not used any more.
+  virtual std::vector<Individual> TakePopulation() = 0;
   virtual ArchiveView Archive() const { return {}; }
   // Of a search over settings; else nullptr.
   virtual const FitRounds* Fit() const { return nullptr; }
   // Of a search along a range; else nullptr.
   virtual const MarginStages* Margin() const { return nullptr; }
+  // Of a search for a repair; else nullptr.
+  virtual const RepairCourse* Repair() const { return nullptr; }
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
   // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.

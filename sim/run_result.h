@@ -69,6 +69,7 @@ struct RunResult {
   std::uint64_t hash_without_ways = 0;              // HashWithoutWays(*this); 0: nobody has computed it
   std::vector<std::vector<RobotState>> trajectory;  // [tick][robot], only when record_trajectory
   double cpu_seconds = 0.0;                         // user CPU of the simulation, filled by whoever measures
+  int contacts = -1;  // that robots began, with one another, an obstacle or a wall; -1: nobody has counted
 };
 
 // Hash of the canonical encoding of all fields above the "not part of the hash" line but `hash` itself.

@@ -39,7 +39,9 @@ struct RunSettings {
 struct RunSpec : RunSettings {
   TestCase test_case;
   std::uint64_t seed = 0;
-  bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
+  // No influence on the hash:
+  bool record_trajectory = false;  // return every pose of every tick
+  bool count_contacts = false;     // return RunResult::contacts
 };
 
 }  // namespace gauntlet::sim

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "base/number_text.h"
+#include "sim/contacts.h"
 #include "sim/physics/physics_engine.h"
 #include "sim/robot/disturber.h"
 #include "sim/robot/obstacle_course.h"
@@ -344,6 +345,11 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   observer = Observer(static_cast<int>(robots), scenario.tick_limit(), scenario.arena().moving().size());
   Loop loop(scenario, *std::move(swarm), seed, observer, options);
   loop.Start();
+  std::optional<Contacts> contacts;
+  if (options.count_contacts) {
+    contacts.emplace(scenario.arena(), static_cast<int>(robots));
+    contacts->Add(observer);
+  }
 
   RunResult result;
   while (observer.last_tick() < scenario.tick_limit()) {
@@ -352,6 +358,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
       result.message = loop.invalid_command();
       break;
     }
+    if (contacts) contacts->Add(observer);
     if (scenario.Finished(observer)) break;
   }
 
@@ -371,6 +378,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   result.ticks = observer.last_tick();
   result.robots = Summarize(observer, outcome.lost);
   result.trajectory_hash = loop.trajectory_hash();
+  if (contacts) result.contacts = contacts->begun();
   SetHashes(result);
   if (record_trajectory) result.trajectory = TrajectoryOf(observer);
   return result;

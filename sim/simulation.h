@@ -29,6 +29,7 @@ struct SimulationOptions {
   PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances = {};
   PhaseProbe* probe = nullptr;  // told of every phase
+  bool count_contacts = false;
 };
 
 // Simulates the scenario to its end. A function of scenario, seed, physics and disturbances alone. Never

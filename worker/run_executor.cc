@@ -15,7 +15,9 @@ sim::RunResult Run(const sim::RunSpec& spec) {
     return refused;
   }
   return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory,
-                       {.physics = spec.physics, .disturbances = spec.disturbances});
+                       {.physics = spec.physics,
+                        .disturbances = spec.disturbances,
+                        .count_contacts = spec.count_contacts});
 }
 
 }  // namespace gauntlet::worker

@@ -10,8 +10,8 @@
 
 #include "controllers/behaviour.h"
 #include "controllers/common/clusters.h"
-#include "controllers/generic/contacts.h"
 #include "sim/arena/arena.h"
+#include "sim/contacts.h"
 #include "sim/observer.h"
 
 namespace gauntlet::controllers::generic {
@@ -65,7 +65,7 @@ class Measures {
 
   const sim::Arena& arena_;
   MeasureSettings settings_;
-  Contacts contacts_;
+  sim::Contacts contacts_;
   Clusters clusters_;
   std::vector<sim::Vec2> places_;  // of the robots, at the moment
   Moment moment_{};

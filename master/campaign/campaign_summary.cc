@@ -77,6 +77,11 @@ std::string EncodeExperiment(const Experiment& experiment) {
 
 std::string EncodePopulation(const std::vector<Individual>& population) {
   CanonicalEncoder encoder;
+  if (!population.empty()) {
+    constexpr std::size_t kBytesOfAnObstacle = 40;
+    const std::size_t obstacles = population.front().test_case.obstacles.size();
+    encoder.Reserve(population.size() * (24 + obstacles * kBytesOfAnObstacle));
+  }
   encoder.Uint(population.size());
   for (const Individual& individual : population) {
     encoder.Uint(individual.id);
@@ -91,14 +96,13 @@ struct RunsOfCase {
   std::uint64_t failing = 0;
 };
 
-// Everything that is told of the stored runs of a search.
-Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, SearchSummary& summary,
-               std::unordered_map<IndividualId, RunsOfCase>& runs_of) {
+// Brings the search to its newest state, and takes everything that is told of its stored runs.
+Result<SavedProgress> RestoreAndAddRuns(const Experiment& experiment, SearchId id, ResultStore& store,
+                                        SearchAlgorithm& search, SearchSummary& summary,
+                                        std::unordered_map<IndividualId, RunsOfCase>& runs_of) {
   const std::string_view failing = FailingOf(experiment);
-  const bool needs_metrics = FailingNeedsMetrics(failing);
   std::map<std::uint32_t, GenerationSummary> generations;
-  const auto add = [&](const StoredRun& run) -> Status {
-    TRY(const RunOutcome outcome, OutcomeOf(run, needs_metrics));
+  const auto add = [&](const StoredRun& run, const RunOutcome& outcome) -> Status {
     const bool completed = outcome.verdict == sim::Verdict::kCompleted;
     GenerationSummary& generation = generations[run.generation];
     generation.generation = run.generation;
@@ -123,10 +127,10 @@ Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, Se
     }
     return Ok{};
   };
-  TRY(needs_metrics ? store.ForEachRun(id, 0, add) : store.ForEachRow(id, 0, add));
+  TRY(SavedProgress saved, RestoreSearch(id, store, search, {add, FailingNeedsMetrics(failing)}));
   std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
   for (auto& [number, generation] : generations) summary.generations.push_back(generation);
-  return Ok{};
+  return saved;
 }
 
 // `stored`: nullptr when the store does not know the search.
@@ -140,7 +144,8 @@ Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch
     summary.distinct_individuals = CountDistinctGenomes(individuals);
     TRY(search, MakeStoredSearch(plan, std::move(individuals)));
   }
-  TRY(const SavedProgress saved, RestoreSearch(plan.id, store, *search));
+  std::unordered_map<IndividualId, RunsOfCase> runs_of;
+  TRY(const SavedProgress saved, RestoreAndAddRuns(experiment, plan.id, store, *search, summary, runs_of));
   summary.settings = plan.settings;
   summary.progress = search->Progress();
   summary.archive = search->Archive();
@@ -148,20 +153,18 @@ Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch
   summary.statistics.insert(summary.statistics.begin(),
                             {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
 
-  std::unordered_map<IndividualId, RunsOfCase> runs_of;
-  TRY(AddRuns(experiment, plan.id, store, summary, runs_of));
-  const std::vector<Individual>& population = search->Population();
+  summary.state_hash = StateHash(EncodeExperiment(experiment), saved.results,
+                                 EncodePopulation(search->Population()), saved.state);
+  summary.finished = stored != nullptr && HasFinished(*stored, experiment, *search);
+  std::vector<Individual> population = search->TakePopulation();
   summary.population.reserve(population.size());
-  for (const Individual& one : population) {
+  for (Individual& one : population) {
     RunsOfCase& runs = runs_of[one.id];
-    summary.population.push_back({one.id, one.parents, one.birth_generation, one.fitness,
-                                  one.test_case.obstacles, std::move(runs.ids), one.test_case.name,
-                                  runs.failing});
+    summary.population.push_back({one.id, std::move(one.parents), one.birth_generation, one.fitness,
+                                  std::move(one.test_case.obstacles), std::move(runs.ids),
+                                  std::move(one.test_case.name), runs.failing});
     if (std::isfinite(one.fitness)) summary.fitness.Add(one.fitness);
   }
-  summary.state_hash =
-      StateHash(EncodeExperiment(experiment), saved.results, EncodePopulation(population), saved.state);
-  summary.finished = stored != nullptr && HasFinished(*stored, experiment, *search);
   return summary;
 }
 

@@ -58,6 +58,7 @@ void ResultsDigest::Add(const StoredRun& run) {
 std::string StateHash(std::string_view experiment, const ResultsDigest& results, std::string_view population,
                       std::string_view search_state) {
   CanonicalEncoder encoder;
+  encoder.Reserve(experiment.size() + population.size() + search_state.size() + 1024);
   encoder.Uint(kDigestFormat);
   encoder.String(experiment);
   encoder.String(results.bytes());

@@ -47,43 +47,60 @@ Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_
   RunOutcome outcome = run;
   if (!with_metrics && !with_ways) return outcome;
   TRY(sim::RunResult result, proto::DecodeStoredResult(run.result));
+  if (with_metrics) outcome.effects = SideEffectsOf(result);
   if (with_metrics) outcome.metrics = std::move(result.metrics);
   if (with_ways) outcome.robots = std::move(result.robots);
   return outcome;
 }
 
-Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search) {
+Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search,
+                                    const RunReader& reader) {
+  const bool with_metrics = search.WantsMetrics() || reader.with_metrics;  // they stand in the results
+  const bool with_ways = search.WantsWays();
+  bool read = reader.take == nullptr;
+  using Take = std::function<void(const StoredRun& run, RunOutcome outcome)>;
+  const auto each = [&](const Take& take) -> Status {
+    const auto visit = [&](const StoredRun& run) -> Status {
+      TRY(RunOutcome outcome, OutcomeOf(run, with_metrics, with_ways));
+      if (!read) {
+        TRY(reader.take(run, outcome));
+      }
+      take(run, std::move(outcome));
+      return Ok{};
+    };
+    TRY(with_metrics || with_ways ? store.ForEachRun(id, 0, visit) : store.ForEachRow(id, 0, visit));
+    read = true;
+    return Ok{};
+  };
   SavedProgress saved;
   saved.last_run = RunIdOf(id, 1) - 1;
   TRY(std::optional<SavedState> newest, store.LoadNewestState(id));
-  if (!newest.has_value()) return saved;
-  saved.last_run = newest->last_run;
-  saved.state = std::move(newest->state);
-  TRY(saved.results, ResultsDigest::Restore(newest->results_digest));
-
-  const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
-    EvaluationOutcome next;  // its runs stand one behind the other
-    const auto tell = [&] {
-      if (next.runs.empty()) return;
-      visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
-    };
-    const bool with_metrics = search.WantsMetrics();  // they stand in the results
-    const bool with_ways = search.WantsWays();
-    const auto take = [&](const StoredRun& run) -> Status {
-      if (run.id > saved.last_run) return Ok{};
-      if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
-      next.individual = run.individual;
-      next.evaluation = run.evaluation;
-      TRY(RunOutcome outcome, OutcomeOf(run, with_metrics, with_ways));
-      next.runs.push_back(std::move(outcome));
+  if (newest) {
+    saved.last_run = newest->last_run;
+    saved.state = std::move(newest->state);
+    TRY(saved.results, ResultsDigest::Restore(newest->results_digest));
+    const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
+      EvaluationOutcome next;  // its runs stand one behind the other
+      const auto tell = [&] {
+        if (next.runs.empty()) return;
+        visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
+      };
+      TRY(each([&](const StoredRun& run, RunOutcome outcome) {
+        if (run.id > saved.last_run) return;
+        if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
+        next.individual = run.individual;
+        next.evaluation = run.evaluation;
+        next.runs.push_back(std::move(outcome));
+      }));
+      tell();
       return Ok{};
     };
-    TRY(with_metrics || with_ways ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take));
-    tell();
-    return Ok{};
-  };
-  CanonicalDecoder decoder(saved.state);
-  TRY(search.Restore(decoder, history));
+    CanonicalDecoder decoder(saved.state);
+    TRY(search.Restore(decoder, history));
+  }
+  if (!read) {
+    TRY(each([](const StoredRun&, const RunOutcome&) {}));
+  }
   return saved;
 }
 

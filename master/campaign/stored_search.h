@@ -35,8 +35,14 @@ struct SavedProgress {
   RunId last_run = 0;     // the last that it has seen; before the first: one less than that one's id
   ResultsDigest results;  // of all that it has seen
 };
+// Who looks at all stored runs of a search, also at those that its newest state has not seen, in their order.
+struct RunReader {
+  std::function<Status(const StoredRun& run, const RunOutcome& outcome)> take = nullptr;
+  bool with_metrics = false;
+};
 // Brings a search that was just made to its newest state. Error: the state or the runs that it has seen
-// cannot be read, or do not fit the search (SearchAlgorithm::Restore).
-Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search);
+// cannot be read, or do not fit the search (SearchAlgorithm::Restore); that of `reader`.
+Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search,
+                                    const RunReader& reader = {});
 
 }  // namespace gauntlet

@@ -121,6 +121,7 @@ void SearchDriver::Store(FinishedRun finished) {
   run.total_failure = finished.result.failure.total;
   run.failure_type = finished.result.failure.type;
   parts_.store.AddRun(run);
+  if (parts_.search.WantsMetrics()) run.effects = SideEffectsOf(finished.result);
   if (parts_.search.WantsMetrics()) run.metrics = std::move(finished.result.metrics);
   if (parts_.search.WantsWays()) run.robots = std::move(finished.result.robots);
   run.spec.clear();

@@ -66,6 +66,13 @@ Individual DecodeIndividual(CanonicalDecoder& decoder) {
 
 }  // namespace
 
+SideEffects SideEffectsOf(const sim::RunResult& result) {
+  SideEffects effects{.contacts = static_cast<double>(result.contacts),
+                      .seconds = static_cast<double>(result.ticks) / sim::kTicksPerSecond};
+  for (const sim::RobotSummary& robot : result.robots) effects.distance += robot.path_length;
+  return effects;
+}
+
 EvaluationOutcome OutcomeOfRuns(IndividualId individual, std::uint32_t evaluation,
                                 std::vector<RunOutcome> runs) {
   EvaluationOutcome outcome{.individual = individual, .evaluation = evaluation, .runs = std::move(runs)};

@@ -30,6 +30,7 @@ class PopulationSearch : public SearchAlgorithm {
   // Aborts when `outcome` is not the answer to the oldest request.
   void Tell(const EvaluationOutcome& outcome) final;
   const std::vector<Individual>& Population() const final { return population_; }
+  std::vector<Individual> TakePopulation() final { return std::move(population_); }
   std::vector<Individual> TakeNewborns() final { return std::exchange(newborns_, {}); }
   std::vector<std::pair<std::string, double>> Statistics() const override { return {}; }
   bool AtBoundary() const override { return pending_.empty(); }

@@ -10,6 +10,7 @@ namespace gauntlet::sim {
 namespace {
 
 constexpr std::uint64_t kExtended = 1ULL << 63;
+constexpr std::size_t kPlainGeneBytes = 5 * sizeof(double);
 
 bool IsExtended(const Genome& genome) {
   return std::any_of(genome.begin(), genome.end(), [](const ObstacleGene& gene) { return !gene.Plain(); });
@@ -76,6 +77,7 @@ Genome DecodeGenome(CanonicalDecoder& decoder) {
 std::uint64_t GenomeHash(const Genome& genome) {
   const bool extended = IsExtended(genome);
   CanonicalEncoder encoder;
+  encoder.Reserve(genome.size() * kPlainGeneBytes);
   for (const ObstacleGene& gene : genome) EncodeGene(gene, extended, encoder);
   Fnv1a64 hash;
   hash.AddBytes(encoder.bytes());

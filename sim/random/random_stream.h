@@ -20,6 +20,7 @@ enum class StreamPurpose : std::uint32_t {
   kVariation = 5,  // shuffling, crossover, mutation
   kTest = 6,
   kStatistics = 7,         // bootstrap
+  kProposals = 8,          // of a search over settings
   kFirstDeviceNoise = 16,  // to 47: one for each device (sim/robot/disturber.h)
   kFaultyRobots = 48,
 };
@@ -61,6 +62,7 @@ enum class SeedPurpose : std::uint32_t {
   kCheck = 8,
   kFit = 9,
   kMargin = 10,
+  kRepair = 11,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.

@@ -1,5 +1,5 @@
 // Covers: controllers/common/clusters.cc
-// Covers: controllers/generic/contacts.cc
+// Covers: sim/contacts.cc
 #include "controllers/generic/measures.h"
 
 #include <gtest/gtest.h>

@@ -25,6 +25,7 @@ class Rememberer : public SearchAlgorithm {
   bool WantsMetrics() const override { return wants_metrics_; }
   SearchProgress Progress() const override { return {}; }
   const std::vector<Individual>& Population() const override { return population_; }
+  std::vector<Individual> TakePopulation() override { return population_; }
   std::vector<Individual> TakeNewborns() override { return {}; }
   std::vector<std::pair<std::string, double>> Statistics() const override { return {}; }
   bool AtBoundary() const override { return true; }

@@ -43,6 +43,7 @@ class ListeningSearch final : public SearchAlgorithm {
   bool WantsMetrics() const override { return wants_metrics_; }
   SearchProgress Progress() const override { return search_->Progress(); }
   const std::vector<Individual>& Population() const override { return search_->Population(); }
+  std::vector<Individual> TakePopulation() override { return search_->TakePopulation(); }
   std::vector<Individual> TakeNewborns() override { return search_->TakeNewborns(); }
   std::vector<std::pair<std::string, double>> Statistics() const override { return search_->Statistics(); }
   bool AtBoundary() const override { return search_->AtBoundary(); }

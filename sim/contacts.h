@@ -7,29 +7,25 @@
 #include "sim/arena/arena.h"
 #include "sim/observer.h"
 
-namespace gauntlet::controllers::generic {
-
-// Bodies that are no farther apart touch, m: what the physics leaves between two that lean on each other is
-// less.
-inline constexpr double kTouching = 0.001;
+namespace gauntlet::sim {
 
 class Contacts {
  public:
-  Contacts(const sim::Arena& arena, int robots);
+  Contacts(const Arena& arena, int robots);
 
   // The newest tick. Who touches at the start has not begun to.
-  void Add(const sim::Observer& observer);
+  void Add(const Observer& observer);
   // Contacts that began: of two robots one, not two.
   int begun() const { return begun_; }
 
  private:
   void Note(std::size_t pair, bool touches);
 
-  std::vector<sim::OrientedBox> boxes_;  // the moving ones first
+  std::vector<OrientedBox> boxes_;  // the moving ones first
   std::size_t moving_ = 0;
   std::vector<std::uint8_t> touching_;  // robot by robot, then robot by box
   int begun_ = 0;
   bool first_ = true;
 };
 
-}  // namespace gauntlet::controllers::generic
+}  // namespace gauntlet::sim
