@@ -56,6 +56,7 @@ void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
 void AddFit(CommandParser& parser);
 void AddMargin(CommandParser& parser);
+void AddRepair(CommandParser& parser);
 void AddAdopt(CommandParser& parser);
 void AddBuildController(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
@@ -67,11 +68,9 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddExamine, AddEvolve,    AddRandom, AddResume, AddShow,
-    AddReplay,  AddQuestions, AddMargin, AddCorpus, AddCompare,
-    AddStudy,   AddTune,      AddFit,    AddReport, AddUi,
-    AddFigure,  AddExport,    AddImport, AddAdopt,  AddBuildController,
-    AddSubmit,  AddMaster,    AddStatus, AddWatch,  AddStop,
-    AddList};
+    AddExamine, AddEvolve, AddRandom, AddResume,  AddShow,   AddReplay, AddQuestions,
+    AddMargin,  AddRepair, AddCorpus, AddCompare, AddStudy,  AddTune,   AddFit,
+    AddReport,  AddUi,     AddFigure, AddExport,  AddImport, AddAdopt,  AddBuildController,
+    AddSubmit,  AddMaster, AddStatus, AddWatch,   AddStop,   AddList};
 
 }  // namespace gauntlet

@@ -52,6 +52,8 @@ struct SearchRow {
   // takes the experiment for that of all its runs takes such a search. Cases may be handed to it.
   bool varies_settings = false;
 
+  bool counts_contacts = false;  // of its runs (RunSpec::count_contacts)
+
   bool given_cases() const { return question != nullptr; }
   bool Related() const { return individuals == Individuals::kPopulation; }
   bool Breeds() const { return Related() && !given_cases(); }

@@ -19,6 +19,7 @@
 #include "search/given/case_minimiser.h"
 #include "search/given/repeated_case.h"
 #include "search/margin/margin_search.h"
+#include "search/repair/repair_search.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet {
@@ -32,7 +33,7 @@ std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
                                   MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow(),
-                                  MarginRow()};
+                                  MarginRow(),         RepairRow()};
   return rows;
 }
 
@@ -86,7 +87,9 @@ std::uint64_t RunSeed(const Experiment& experiment, const EvaluationRequest& eva
 sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& evaluation,
                        std::uint32_t replicate) {
   const sim::RunSettings& settings = evaluation.settings != nullptr ? *evaluation.settings : experiment;
-  return {settings, evaluation.test_case, RunSeed(experiment, evaluation, replicate)};
+  sim::RunSpec spec{settings, evaluation.test_case, RunSeed(experiment, evaluation, replicate)};
+  spec.count_contacts = RowOf(experiment).counts_contacts;
+  return spec;
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {

@@ -15,9 +15,8 @@
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
 #include "report/figures/condition_figure.h"
-#include "report/figures/fit_figure.h"
-#include "report/figures/margin_figure.h"
 #include "report/figures/set_comparison.h"
+#include "report/figures/settings/settings_answer.h"
 #include "report/figures/study_figures.h"
 #include "report/pages/study_pages.h"
 #include "study/questions/questioned_cases.h"
@@ -134,8 +133,8 @@ Result<ExitCode> RunFigureCommand(CommandContext& context, const FigureOptions& 
     figures = FiguresOf(CoursesOf(facts), MapsOf(facts));
     std::ranges::move(ConditionFigures(facts), std::back_inserter(figures));
     std::ranges::move(ArchiveFigures(facts), std::back_inserter(figures));
-    std::ranges::move(FitFigures(facts), std::back_inserter(figures));
-    std::ranges::move(MarginFigures(facts), std::back_inserter(figures));
+    if (auto settings = SettingsAnswerOf(facts))
+      std::ranges::move(settings->figures, std::back_inserter(figures));
   } else {
     TRY(shown, ShowRuns(facts, {run}));
     if (const std::string& trouble = shown.front().trouble; !trouble.empty()) {

@@ -189,6 +189,8 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
     TRY(facts.fit, ReadFit(dir));
   } else if (Reads(row.info, "margin.vary")) {
     TRY(facts.margins, ReadMargins(dir));
+  } else if (Reads(row.info, "repair.vary")) {
+    TRY(facts.repair, ReadRepair(dir));
   }
   for (const auto question : kQuestions) {
     TRY(auto told, ToldCases(question(), dir));

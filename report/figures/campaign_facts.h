@@ -14,6 +14,7 @@
 #include "study/margins/margin_result.h"
 #include "study/questions/confirmations.h"
 #include "study/questions/question.h"
+#include "study/repairs/repair_result.h"
 
 namespace gauntlet {
 
@@ -64,6 +65,7 @@ struct CampaignFacts {
   CampaignAnswers answers;
   std::optional<FitResult> fit = std::nullopt;  // that the campaign is
   std::vector<Margin> margins = {};             // that it looks for
+  std::optional<Repair> repair = std::nullopt;  // that it is
   std::vector<ToldCase> told_cases = {};        // what questions about them say, one question after the other
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each

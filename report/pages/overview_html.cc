@@ -12,8 +12,7 @@
 #include "controllers/registry.h"
 #include "report/figures/campaign_figures.h"
 #include "report/figures/condition_figure.h"
-#include "report/figures/fit_figure.h"
-#include "report/figures/margin_figure.h"
+#include "report/figures/settings/settings_answer.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
@@ -21,7 +20,6 @@
 #include "report/tables/next_commands.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
-#include "study/fits/fit_text.h"
 
 namespace gauntlet {
 namespace {
@@ -167,14 +165,10 @@ std::string ConditionsHtml(const CampaignFacts& facts) {
 }
 
 // What a search over settings has found; what became of single runs is not what it is about.
-std::string SettingsHtml(const CampaignFacts& facts) {
-  const bool fit = facts.fit.has_value();
-  const auto sections = fit ? TellFit(*facts.fit, facts.directory, "gauntlet")
-                            : TellMargins(facts.margins, facts.directory, "gauntlet");
+std::string SettingsHtml(const CampaignFacts& facts, const SettingsAnswer& answer) {
   std::string html;
-  for (const Section& section : sections) html += ToHtml(section);
-  for (const NamedFigure& figure : fit ? FitFigures(facts) : MarginFigures(facts))
-    html += FigureHtml(figure, facts.directory);
+  for (const Section& section : answer.sections) html += ToHtml(section);
+  for (const NamedFigure& figure : answer.figures) html += FigureHtml(figure, facts.directory);
   return html;
 }
 
@@ -195,14 +189,14 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
     html += "</ul>\n";
   }
   html += ConditionsHtml(facts) + SmallestLayoutsHtml(pages, number);
-  const bool of_settings = facts.fit || !facts.margins.empty();
-  html += of_settings ? SettingsHtml(facts)
-                      : ToughestRunsHtml(pages, number) + DistinctFailuresHtml(pages, number);
+  const std::optional<SettingsAnswer> settings = SettingsAnswerOf(facts);
+  html += settings ? SettingsHtml(facts, *settings)
+                   : ToughestRunsHtml(pages, number) + DistinctFailuresHtml(pages, number);
   html += fmt::format(
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
-  if (!of_settings) html += CoursesHtml(pages);
+  if (!settings) html += CoursesHtml(pages);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format("<details><summary>{}, as it was resolved</summary><pre>{}</pre></details>\n",
                             facts.plans.size() == 1

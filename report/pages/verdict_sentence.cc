@@ -9,7 +9,6 @@
 #include "report/pages/campaign_pages.h"
 #include "report/tables/conditions.h"
 #include "report/tables/summary_tables.h"
-#include "study/fits/fit_text.h"
 
 namespace gauntlet {
 namespace {
@@ -82,8 +81,7 @@ std::string CourseOf(const CampaignPages& pages) {
   if (summary.runs_failed == summary.runs_done)
     return fmt::format("No run gave a result: of {} runs none could be simulated to its end.",
                        FormatCount(summary.runs_done));
-  if (facts.fit) return OutcomeOf(*facts.fit);
-  if (!facts.margins.empty()) return OutcomeOf(facts.margins.front());
+  if (const auto settings = SettingsAnswerOf(facts)) return settings->outcome;
   // What is counted as failing is what the empty arena is asked for too.
   if (summary.failing_runs == 0) {
     return fmt::format("The {} held out: in none of {} runs did it fail.{}", SwarmOf(facts),

@@ -105,6 +105,17 @@ struct MarginSpec {
   double share = 0.5;  // of failures, that they are to cross
 };
 
+// What a repair is asked for (search/repair). Cases are handed in: those of the training part, the random
+// ones that guard it, the held-out ones, and the random ones that judge.
+struct RepairSpec {
+  std::string vary;   // VariedKey::ToText, blanks in between
+  int runs = 5000;    // of the search; explanation and proof come on top
+  int training = 0;   // cases
+  int guards = 0;     // cases
+  std::string units;  // of held-out cases: how many belong together, in their order, blanks in between
+  std::string search = "genetic";  // of the repaired experiment, in place of the repair
+};
+
 struct Experiment : sim::RunSettings {
   std::string name;
   std::string description;
@@ -113,6 +124,7 @@ struct Experiment : sim::RunSettings {
   SearchSpec search;
   FitSpec fit;
   MarginSpec margin;
+  RepairSpec repair;
   std::uint64_t seed = 1;
   StoreSpec store;
 };

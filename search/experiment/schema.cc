@@ -184,6 +184,23 @@ std::vector<Key> MarginKeys() {
   return keys;
 }
 
+std::vector<Key> RepairKeys(const Catalogue& catalogue) {
+  constexpr auto kRepair = &Experiment::repair;
+  std::vector<Key> keys = {
+      FieldKey<kRepair, &RepairSpec::vary>("repair.vary", "as fit.vary"),
+      NumberKey<kRepair, &RepairSpec::runs>("repair.runs", "", 1, 1e8,
+                                            "of the search; explanation and proof come on top"),
+      NumberKey<kRepair, &RepairSpec::training>("repair.training", "", 0, 1e6, "cases that train"),
+      NumberKey<kRepair, &RepairSpec::guards>("repair.guards", "", 0, 1e6, "random cases that guard them"),
+      FieldKey<kRepair, &RepairSpec::units>("repair.units", "how many held-out cases belong together"),
+      FieldKey<kRepair, &RepairSpec::search>("repair.search", "search.algorithm of the repaired experiment"),
+  };
+  keys.back().type = KeyType::kChoice;
+  keys.back().choices = AlgorithmKey(catalogue).choices;
+  for (Key& key : keys) key.rare = key.came_later = true;
+  return keys;
+}
+
 constexpr double kLeastRectangleSide = controllers::command::kLeastArenaSide;
 
 std::vector<Key> RectangleKeys() {
@@ -271,6 +288,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add(SearchKeys(catalogue), &Key::of_searches);
   add(FitKeys(catalogue), &Key::of_searches);
   add(MarginKeys(), &Key::of_searches);
+  add(RepairKeys(catalogue), &Key::of_searches);
   add(RandomFaultKeys(), &Key::disturbs);
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(

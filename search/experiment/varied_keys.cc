@@ -47,7 +47,7 @@ Error Wrong(const std::string& text, const std::string& what) {
 }
 
 std::optional<std::string> WhyNot(const Key& key) {
-  for (const std::string_view of_searches : {"search.", "fit.", "margin."}) {
+  for (const std::string_view of_searches : {"search.", "fit.", "margin.", "repair."}) {
     if (key.path.starts_with(of_searches)) return "says how is searched";
   }
   if (key.type == KeyType::kSeed) return "gives every run its seed";

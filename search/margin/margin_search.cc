@@ -14,9 +14,12 @@
 namespace gauntlet {
 namespace {
 
+KeyValue HeldBy(const VariedKey& key, double value) {
+  return key.key.type == KeyType::kInteger ? KeyValue(static_cast<std::int64_t>(value)) : KeyValue(value);
+}
+
 Experiment AtValue(const Experiment& experiment, const VariedKey& key, double value) {
-  const KeyValue held =
-      key.key.type == KeyType::kInteger ? KeyValue(static_cast<std::int64_t>(value)) : KeyValue(value);
+  const KeyValue held = HeldBy(key, value);
   return WithValues(experiment, {&key, 1}, {&held, 1});
 }
 
@@ -66,86 +69,37 @@ Status CheckHasEffect(const Experiment& experiment, const VariedKey& key) {
 
 }  // namespace
 
-MarginSearch::MarginSearch(const SearchSetup& setup, MarginPlan plan)
-    : PopulationSearch(setup),
-      stages_(std::move(plan)),
-      failing_(FailingOf(setup_.experiment)),
-      needs_metrics_(FailingNeedsMetrics(failing_)) {
-  for (const sim::TestCase& test_case : setup.cases)
-    newborns_.push_back(population_.emplace_back(MakeIndividual(++born_, test_case)));
+MarginCourse::MarginCourse(MarginPlan plan, std::string_view failing)
+    : stages_(std::move(plan)), varied_({stages_.plan().key}), failing_(failing) {}
+
+std::vector<SettingsRun> MarginCourse::Next() {
+  std::vector<SettingsRun> runs;
+  for (const MarginRun& run : stages_.Next()) {
+    auto found = std::ranges::find(numbers_, run.value);
+    if (found == numbers_.end()) {
+      found = numbers_.insert(found, run.value);
+      values_.push_back({HeldBy(varied_.front(), run.value)});
+    }
+    runs.push_back({static_cast<std::size_t>(found - numbers_.begin()), run.of_case});
+  }
+  return runs;
+}
+
+void MarginCourse::Tell(const SettingsRun& run, const RunOutcome& outcome) {
+  stages_.Tell({numbers_[run.setting], run.of_case},
+               outcome.completed() ? std::optional(Fails(outcome, failing_)) : std::nullopt);
+}
+
+bool MarginCourse::WantsMetrics() const {
+  return FailingNeedsMetrics(failing_);
 }
 
 Result<std::unique_ptr<MarginSearch>> MarginSearch::Create(const SearchSetup& setup) {
   TRY(MarginPlan plan, MakeMarginPlan(setup.experiment, AllKeysOf(setup.experiment), setup.cases.size()));
   TRY(CheckRange(setup.experiment, plan.key));
   TRY(CheckHasEffect(setup.experiment, plan.key));
-  return std::unique_ptr<MarginSearch>(new MarginSearch(setup, std::move(plan)));
-}
-
-EvaluationRequest MarginSearch::RequestOf(const MarginRun& run) {
-  const auto [found, is_new] = copies_.try_emplace({run.value, run.of_case});
-  Individual& copy = found->second;
-  if (is_new) {
-    copy = MakeIndividual(++born_, setup_.cases[run.of_case]);
-    copy.birth_generation = static_cast<std::uint32_t>(stages_.stages());
-    copy.parents = {run.of_case + 1};
-    newborns_.push_back(copy);
-  }
-  std::shared_ptr<const Experiment>& settings = settings_[run.value];
-  if (settings == nullptr)
-    settings = std::make_shared<const Experiment>(AtValue(setup_.experiment, stages_.plan().key, run.value));
-  EvaluationRequest request = Request(copy, static_cast<std::uint32_t>(stages_.stages()));
-  request.settings = settings;
-  request.parents.clear();
-  return request;
-}
-
-std::vector<EvaluationRequest> MarginSearch::Ask() {
-  std::vector<EvaluationRequest> requests;
-  if (!asked_.empty() || ended_) return requests;
-  for (const MarginRun& run : stages_.Next()) {
-    requests.push_back(RequestOf(run));
-    asked_.push_back(run);
-  }
-  ended_ = requests.empty();
-  return requests;
-}
-
-void MarginSearch::Told(const EvaluationOutcome& outcome) {
-  const MarginRun run = asked_.front();
-  asked_.pop_front();
-  Record(outcome, copies_.at({run.value, run.of_case}));
-  for (const RunOutcome& one : outcome.runs)
-    stages_.Tell(run, one.completed() ? std::optional(Fails(one, failing_)) : std::nullopt);
-  if (asked_.empty()) ended_ = MarginStages(stages_).Next().empty();
-}
-
-SearchProgress MarginSearch::Progress() const {
-  const auto planned = ended_ ? evaluations_done_ : static_cast<std::uint64_t>(stages_.plan().runs);
-  return {.generation = stages_.stages() > 0 ? 1U : 0U,
-          .generations = 1,
-          .evaluations_done = evaluations_done_,
-          .evaluations_planned = planned,
-          .individuals_planned = planned,
-          .finished = ended_};
-}
-
-Status MarginSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
-  // What was asked for follows from what was told.
-  const std::uint64_t told = std::exchange(evaluations_done_, 0);
-  std::deque<EvaluationRequest> expected;
-  bool known = true;
-  TRY(history([&](const EvaluationOutcome& outcome) {
-    if (expected.empty()) std::ranges::move(Ask(), std::back_inserter(expected));
-    known = known && !expected.empty() && expected.front().individual == outcome.individual &&
-            expected.front().evaluation == outcome.evaluation;
-    if (!known) return;
-    expected.pop_front();
-    Tell(outcome);
-  }));
-  newborns_.clear();
-  if (known && expected.empty() && evaluations_done_ == told) return Ok{};
-  return Damaged("its evaluations are not those that it would ask for");
+  return std::unique_ptr<MarginSearch>(
+      new MarginSearch(setup, std::make_unique<MarginCourse>(std::move(plan), FailingOf(setup.experiment))));
 }
 
 SearchRow MarginRow() {

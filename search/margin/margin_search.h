@@ -2,52 +2,53 @@
 // change (margin_stages.h).
 #pragma once
 
-#include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
-#include <utility>
+#include <string_view>
 #include <vector>
 
-#include "search/evolution/population_search.h"
 #include "search/margin/margin_stages.h"
 #include "search/search_row.h"
+#include "search/settings/settings_search.h"
 
 namespace gauntlet {
 
-// The cases that were handed in are individuals 1, 2, ... and are not simulated themselves; then follow those
-// of a value each, copies of them. The seed of a run follows from its case and from how often it was
-// simulated under its value, so that different values have common seeds.
-class MarginSearch final : public PopulationSearch {
+// The stages of a margin as those of a search over settings, one for each value.
+class MarginCourse final : public SettingsCourse {
+ public:
+  MarginCourse(MarginPlan plan, std::string_view failing);
+
+  const MarginStages& margin() const { return stages_; }
+
+  const std::vector<VariedKey>& varied() const override { return varied_; }
+  const std::vector<KeyValue>& ValuesOf(std::size_t setting) const override { return values_[setting]; }
+  std::vector<SettingsRun> Next() override;
+  void Tell(const SettingsRun& run, const RunOutcome& outcome) override;
+  bool AtEnd() const override { return MarginStages(stages_).Next().empty(); }
+  std::size_t stages() const override { return stages_.stages(); }
+  std::uint64_t RunsPlanned() const override { return static_cast<std::uint64_t>(stages_.plan().runs); }
+  bool WantsMetrics() const override;
+
+ private:
+  MarginStages stages_;
+  std::vector<VariedKey> varied_;
+  std::string_view failing_;
+  std::vector<double> numbers_;  // of the settings
+  std::vector<std::vector<KeyValue>> values_;
+};
+
+class MarginSearch final : public SettingsSearch {
  public:
   // Error: that of MakeMarginPlan; no case is given; a value of the range breaks a rule, and which; the key
   // disturbs a device that no robot under test has.
   static Result<std::unique_ptr<MarginSearch>> Create(const SearchSetup& setup);
 
-  std::vector<EvaluationRequest> Ask() override;
-  bool WantsMetrics() const override { return needs_metrics_; }
-  SearchProgress Progress() const override;
-  // At the end of each stage.
-  bool AtBoundary() const override { return asked_.empty(); }
-
-  const MarginStages* Margin() const override { return &stages_; }
+  const MarginStages* Margin() const override { return &course_->margin(); }
 
  private:
-  MarginSearch(const SearchSetup& setup, MarginPlan plan);
+  MarginSearch(const SearchSetup& setup, std::unique_ptr<MarginCourse> course)
+      : SettingsSearch(setup, *course), course_(std::move(course)) {}
 
-  void Told(const EvaluationOutcome& outcome) override;
-  Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
-
-  EvaluationRequest RequestOf(const MarginRun& run);
-
-  MarginStages stages_;
-  const std::string_view failing_;
-  const bool needs_metrics_;
-  std::map<std::pair<double, std::size_t>, Individual> copies_;  // by value and case
-  std::map<double, std::shared_ptr<const Experiment>> settings_;
-  std::deque<MarginRun> asked_;  // not told
-  IndividualId born_ = 0;
-  bool ended_ = false;
+  std::unique_ptr<MarginCourse> course_;
 };
 
 SearchRow MarginRow();

@@ -1,5 +1,5 @@
 // Covers: analysis/figures/pairs_figure.cc
-#include "report/figures/fit_figure.h"
+#include "report/figures/settings/fit_figure.h"
 
 #include <gtest/gtest.h>
 #include <pugixml.hpp>

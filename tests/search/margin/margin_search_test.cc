@@ -1,3 +1,4 @@
+// Covers: search/settings/settings_search.cc
 #include "search/margin/margin_search.h"
 
 #include <gmock/gmock.h>

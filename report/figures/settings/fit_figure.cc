@@ -1,4 +1,4 @@
-#include "report/figures/fit_figure.h"
+#include "report/figures/settings/fit_figure.h"
 
 #include <fmt/format.h>
 

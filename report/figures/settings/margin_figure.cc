@@ -1,4 +1,4 @@
-#include "report/figures/margin_figure.h"
+#include "report/figures/settings/margin_figure.h"
 
 #include <fmt/format.h>
 

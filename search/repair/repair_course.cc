@@ -1,0 +1,393 @@
+#include "search/repair/repair_course.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/number_text.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+#include "controllers/registry.h"
+#include "search/failure_tally.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr double kFirstStep = 0.25;        // of a range
+constexpr std::size_t kGenerations = 16;   // that a budget is spent on, if it can be
+constexpr std::size_t kFewestCases = 6;    // of a candidate
+constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
+constexpr double kMoreContacts = 1.0;      // times the original's
+constexpr double kMoreTimeouts = 0.01;     // beside the original's share
+
+double Mean(double sum, int count) {
+  return count == 0 ? 0.0 : sum / count;
+}
+
+// The first `count` of them in an order that `seed` decides.
+std::vector<std::size_t> Shuffled(std::size_t first, std::size_t count, std::uint64_t seed,
+                                  std::uint32_t turn) {
+  std::vector<std::size_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), first);
+  sim::RandomStream random(seed, sim::StreamPurpose::kVariation, turn);
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(numbers[i - 1], numbers[random.Below(static_cast<std::uint32_t>(i))]);
+  return numbers;
+}
+
+}  // namespace
+
+std::size_t RepairCases::held_out() const {
+  return std::accumulate(units.begin(), units.end(), std::size_t{0});
+}
+
+std::uint64_t RepairPlan::RunsOfCurves() const {
+  std::uint64_t values = 0;
+  for (const VariedKey& key : varied) {
+    const bool whole = key.key.type == KeyType::kInteger;
+    const auto all = whole ? static_cast<std::size_t>(key.high - key.low) + 1 : kCurveValues;
+    values += key.listed() ? key.values.size() : std::min(kCurveValues, all);
+  }
+  return values * std::min(cases.training, kCurveCases);
+}
+
+std::uint64_t RepairPlan::RunsOfProof() const {
+  return kProofRuns * (2 * cases.training + (2 + 2 * varied.size()) * cases.held_out()) + 2 * cases.random;
+}
+
+Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const Key> keys, std::size_t cases,
+                                  std::uint64_t seed) {
+  const RepairSpec& spec = experiment.repair;
+  RepairPlan plan{.runs = spec.runs, .seed = seed};
+  TRY(plan.varied, ParseVariedKeys(Split(spec.vary, ' '), keys, experiment));
+  for (const VariedKey& key : plan.varied) {
+    const KeyValue& value = plan.original.emplace_back(key.key.get(experiment));
+    const bool inside = key.listed() ? std::ranges::count(key.values, value) > 0
+                                     : NumberOf(value) >= key.low && NumberOf(value) <= key.high;
+    if (!inside)
+      return InvalidInput(fmt::format("--vary {}: the controller has {}, which is not in this range",
+                                      key.ToText(), ToSet(value)));
+  }
+  plan.cases.training = static_cast<std::size_t>(spec.training);
+  plan.cases.guards = static_cast<std::size_t>(spec.guards);
+  for (const std::string& text : Split(spec.units, ' ')) {
+    if (const auto unit = ParseNumber<std::size_t>(text)) plan.cases.units.push_back(*unit);
+  }
+  if (plan.cases.training == 0 || plan.cases.first_random() > cases)
+    return InvalidInput(
+        fmt::format("a repair of {} training cases, {} guards and {} held-out ones is given {}",
+                    plan.cases.training, plan.cases.guards, plan.cases.held_out(), Counted(cases, "case")));
+  plan.cases.random = cases - plan.cases.first_random();
+  if (const auto* scenario = controllers::FindScenario(experiment))
+    plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
+  const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
+  const std::size_t least = plan.cases.training + plan.cases.guards + (candidates + 3) * kFewestCases;
+  if (static_cast<std::size_t>(spec.runs) < least)
+    return InvalidInput(
+        fmt::format("--budget {}: at least {} runs are needed: the original controller in {} cases, "
+                    "and one generation",
+                    spec.runs, least, plan.cases.training + plan.cases.guards));
+  return plan;
+}
+
+void RepairTally::Add(const RepairTally& other) {
+  runs += other.runs;
+  failures += other.failures;
+  without_result += other.without_result;
+  timeouts += other.timeouts;
+  counted += other.counted;
+  fitness += other.fitness;
+  effects.contacts += other.effects.contacts;
+  effects.seconds += other.effects.seconds;
+  effects.distance += other.effects.distance;
+}
+
+RepairCourse::RepairCourse(RepairPlan plan, std::string_view failing)
+    : plan_(std::move(plan)),
+      failing_(failing),
+      cma_(
+          [&] {
+            SettingsPoint start;
+            for (std::size_t i = 0; i < plan_.varied.size(); ++i)
+              start.push_back(plan_.varied[i].PlaceOf(plan_.original[i]));
+            return start;
+          }(),
+          kFirstStep, plan_.seed),
+      curves_(plan_.varied.size()),
+      alone_(plan_.varied.size()),
+      all_but_(plan_.varied.size()) {
+  AddSetting(plan_.original);
+}
+
+std::size_t RepairCourse::AddSetting(std::vector<KeyValue> values) {
+  const auto known = std::ranges::find(settings_, values);
+  if (known != settings_.end()) return static_cast<std::size_t>(known - settings_.begin());
+  settings_.push_back(std::move(values));
+  tallies_.emplace_back();
+  return settings_.size() - 1;
+}
+
+std::size_t RepairCourse::AddRounded(const SettingsPoint& place) {
+  std::vector<KeyValue> values;
+  for (std::size_t i = 0; i < place.size(); ++i) values.push_back(plan_.varied[i].RoundedAt(place[i]));
+  return AddSetting(std::move(values));
+}
+
+void RepairCourse::Tell(const SettingsRun& run, const RunOutcome& outcome) {
+  RepairTally one{.runs = 1};
+  if (!outcome.completed()) {
+    one.failures = one.without_result = 1;
+  } else {
+    one.failures = Fails(outcome, failing_) ? 1 : 0;
+    one.fitness = outcome.fitness;
+    one.timeouts = plan_.time_limit > 0.0 && outcome.effects.seconds >= plan_.time_limit ? 1 : 0;
+    one.counted = outcome.effects.contacts >= 0.0 ? 1 : 0;
+    one.effects = outcome.effects;
+    one.effects.contacts = std::max(one.effects.contacts, 0.0);
+  }
+  tallies_[run.setting][run.of_case].Add(one);
+}
+
+RepairTally RepairCourse::TallyOf(std::size_t setting, std::size_t of_case) const {
+  const auto found = tallies_[setting].find(of_case);
+  return found == tallies_[setting].end() ? RepairTally() : found->second;
+}
+
+RepairTally RepairCourse::TallyOf(std::size_t setting, std::size_t first, std::size_t count) const {
+  RepairTally sum;
+  for (std::size_t i = 0; i < count; ++i) sum.Add(TallyOf(setting, first + i));
+  return sum;
+}
+
+RepairTally RepairCourse::Sum(std::size_t setting, std::span<const std::size_t> cases) const {
+  RepairTally sum;
+  for (const std::size_t one : cases) sum.Add(TallyOf(setting, one));
+  return sum;
+}
+
+double RepairCourse::ScoreOf(std::size_t setting, std::span<const std::size_t> cases) const {
+  RepairTally training;
+  RepairTally guards;
+  for (const std::size_t one : cases)
+    (one < plan_.cases.training ? training : guards).Add(TallyOf(setting, one));
+  double score = training.Share() + guards.Share();
+  const RepairTally here = Sum(setting, cases);
+  const RepairTally there = Sum(kOriginal, cases);
+  const double most = kMoreContacts * Mean(there.effects.contacts, there.counted);
+  if (most > 0.0 && here.counted > 0)
+    score += std::max(0.0, Mean(here.effects.contacts, here.counted) / most - 1.0);
+  score += std::max(0.0, Mean(here.timeouts, here.runs) - Mean(there.timeouts, there.runs) - kMoreTimeouts);
+  return score;
+}
+
+bool RepairCourse::Better(std::size_t one, std::size_t other, std::span<const std::size_t> cases) const {
+  const double score = ScoreOf(one, cases);
+  const double against = ScoreOf(other, cases);
+  if (score != against) return score < against;
+  const RepairTally a = Sum(one, cases);
+  const RepairTally b = Sum(other, cases);
+  return Mean(a.fitness, a.runs - a.without_result) > Mean(b.fitness, b.runs - b.without_result);
+}
+
+std::uint64_t RepairCourse::RunsOfGeneration() const {
+  const std::size_t all = plan_.cases.training + plan_.cases.guards;
+  const std::size_t left = static_cast<std::size_t>(plan_.runs) - all;
+  const std::size_t each = left / ((kGenerations + 1) * cma_.population());
+  return cma_.population() * std::min(all, std::max(kFewestCases, each));
+}
+
+void RepairCourse::BeginGeneration() {
+  candidates_.clear();
+  for (const SettingsPoint& place : cma_.Ask()) {
+    std::vector<KeyValue> values;
+    for (std::size_t i = 0; i < place.size(); ++i) values.push_back(plan_.varied[i].ValueAt(place[i]));
+    candidates_.push_back(AddSetting(std::move(values)));
+  }
+  racing_ = candidates_;
+  const std::size_t each = RunsOfGeneration() / cma_.population();
+  const std::size_t guards = std::min(plan_.cases.guards, each / 3);
+  const std::size_t training = std::min(plan_.cases.training, each - guards);
+  const auto turn = static_cast<std::uint32_t>(++generations_);
+  const auto failed = Shuffled(0, plan_.cases.training, plan_.seed, 2 * turn);
+  const auto random = Shuffled(plan_.cases.training, plan_.cases.guards, plan_.seed, 2 * turn + 1);
+  cases_.clear();
+  for (std::size_t i = 0; i < training; ++i) {
+    cases_.push_back(failed[i]);
+    const std::size_t wanted = (i + 1) * guards / training;
+    while (cases_.size() - (i + 1) < wanted) cases_.push_back(random[cases_.size() - (i + 1)]);
+  }
+  simulated_ = 0;
+}
+
+std::vector<SettingsRun> RepairCourse::NextBlock() {
+  const std::size_t end =
+      std::min(cases_.size(), simulated_ + (cases_.size() + kBlocksOfCases - 1) / kBlocksOfCases);
+  std::vector<SettingsRun> runs;
+  for (const std::size_t setting : racing_) {
+    for (std::size_t i = simulated_; i < end; ++i) runs.push_back({setting, cases_[i]});
+  }
+  simulated_ = end;
+  searched_ += runs.size();
+  return runs;
+}
+
+// Those that stay behind the better half even if they fail no more, and all others in all that is left.
+void RepairCourse::DropHopeless() {
+  const std::span<const std::size_t> seen(cases_.data(), simulated_);
+  const auto left = static_cast<double>(cases_.size() - simulated_) / static_cast<double>(cases_.size());
+  const double share = 1.0 - left;
+  std::vector<double> worst;
+  for (const std::size_t one : racing_) worst.push_back(ScoreOf(one, seen) * share + 2.0 * left);
+  if (worst.size() <= cma_.parents()) return;
+  std::ranges::nth_element(worst, worst.begin() + static_cast<std::ptrdiff_t>(cma_.parents()) - 1);
+  const double bound = worst[cma_.parents() - 1];
+  std::erase_if(racing_, [&](std::size_t one) { return ScoreOf(one, seen) * share > bound; });
+}
+
+void RepairCourse::EndGeneration() {
+  std::vector<std::size_t> order(candidates_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto in_race = [&](std::size_t i) { return std::ranges::count(racing_, candidates_[i]) > 0; };
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    if (in_race(a) != in_race(b)) return in_race(a);
+    return Better(candidates_[a], candidates_[b], cases_);
+  });
+  cma_.Tell(order);
+  chosen_from_ = {candidates_[order.front()]};
+}
+
+std::vector<SettingsRun> RepairCourse::BeginChoice() {
+  stage_ = Stage::kChoice;
+  const std::vector<KeyValue> best = settings_[chosen_from_.front()];
+  SettingsPoint place;
+  for (std::size_t i = 0; i < best.size(); ++i) place.push_back(plan_.varied[i].PlaceOf(best[i]));
+  chosen_from_ = {AddRounded(cma_.mean())};
+  if (const std::size_t rounded = AddRounded(place); rounded != chosen_from_.front())
+    chosen_from_.push_back(rounded);
+  const std::size_t all = plan_.cases.training + plan_.cases.guards;
+  const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
+  const std::size_t each = std::min(all, std::max(kFewestCases, left / chosen_from_.size()));
+  cases_ = Shuffled(0, all, plan_.seed, 0);
+  cases_.resize(each);
+  std::vector<SettingsRun> runs;
+  for (const std::size_t setting : chosen_from_) {
+    for (const std::size_t one : cases_) runs.push_back({setting, one});
+  }
+  searched_ += runs.size();
+  return runs;
+}
+
+std::vector<std::size_t> RepairCourse::CurveCases() const {
+  std::vector<std::size_t> cases = Shuffled(0, plan_.cases.training, plan_.seed, 1);
+  cases.resize(std::min(cases.size(), RepairPlan::kCurveCases));
+  return cases;
+}
+
+std::vector<SettingsRun> RepairCourse::BeginCurves() {
+  stage_ = Stage::kCurves;
+  repaired_ = *std::ranges::min_element(chosen_from_,
+                                        [&](std::size_t a, std::size_t b) { return Better(a, b, cases_); });
+  std::vector<SettingsRun> runs;
+  for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
+    const VariedKey& varied = plan_.varied[key];
+    std::vector<KeyValue> values = varied.values;
+    for (std::size_t i = 0; !varied.listed() && i < RepairPlan::kCurveValues; ++i) {
+      const KeyValue value = varied.RoundedAt(static_cast<double>(i) / (RepairPlan::kCurveValues - 1));
+      if (std::ranges::count(values, value) == 0) values.push_back(value);
+    }
+    for (const KeyValue& value : values) {
+      std::vector<KeyValue> all = plan_.original;
+      all[key] = value;
+      const std::size_t setting = AddSetting(std::move(all));
+      curves_[key].push_back(setting);
+      if (setting == kOriginal) continue;
+      for (const std::size_t one : CurveCases()) runs.push_back({setting, one});
+    }
+  }
+  return runs;
+}
+
+std::vector<SettingsRun> RepairCourse::BeginProof() {
+  stage_ = Stage::kProof;
+  const std::vector<std::size_t> cases = CurveCases();
+  std::vector<std::size_t> in_held_out = {kOriginal, *repaired_};
+  for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
+    std::size_t best = kOriginal;
+    for (const std::size_t one : curves_[key]) {
+      if (Sum(one, cases).Share() < Sum(best, cases).Share()) best = one;
+    }
+    if (best != kOriginal) alone_[key] = best;
+    std::vector<KeyValue> all_but = settings_[*repaired_];
+    if (all_but[key] != plan_.original[key]) {
+      all_but[key] = plan_.original[key];
+      all_but_[key] = AddSetting(std::move(all_but));
+    }
+    for (const auto& one : {alone_[key], all_but_[key]}) {
+      if (one && std::ranges::count(in_held_out, *one) == 0) in_held_out.push_back(*one);
+    }
+  }
+  // What the search has seen of these counts no more.
+  for (const std::size_t setting : {kOriginal, *repaired_}) {
+    for (std::size_t i = 0; i < plan_.cases.training; ++i) tallies_[setting].erase(i);
+  }
+  std::vector<SettingsRun> runs;
+  const auto ask = [&](std::size_t setting, std::size_t first, std::size_t count, std::size_t times) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t run = 0; run < times; ++run) runs.push_back({setting, first + i});
+    }
+  };
+  for (const std::size_t setting : in_held_out)
+    ask(setting, plan_.cases.first_held_out(), plan_.cases.held_out(), RepairPlan::kProofRuns);
+  for (const std::size_t setting : std::array{kOriginal, *repaired_}) {
+    if (setting == kOriginal && *repaired_ == kOriginal) continue;
+    ask(setting, 0, plan_.cases.training, RepairPlan::kProofRuns);
+    ask(setting, plan_.cases.first_random(), plan_.cases.random, 1);
+  }
+  return runs;
+}
+
+std::vector<SettingsRun> RepairCourse::Next() {
+  ++stages_;
+  switch (stage_) {
+    case Stage::kStart: {
+      stage_ = Stage::kBaseline;
+      std::vector<SettingsRun> runs;
+      for (std::size_t i = 0; i < plan_.cases.first_held_out(); ++i) runs.push_back({kOriginal, i});
+      searched_ += runs.size();
+      return runs;
+    }
+    case Stage::kBaseline:
+      stage_ = Stage::kSearch;
+      BeginGeneration();
+      return NextBlock();
+    case Stage::kSearch: {
+      DropHopeless();
+      if (simulated_ < cases_.size()) return NextBlock();
+      EndGeneration();
+      const std::uint64_t choice = 2 * RunsOfGeneration() / cma_.population();
+      if (searched_ + RunsOfGeneration() + choice > static_cast<std::uint64_t>(plan_.runs))
+        return BeginChoice();
+      BeginGeneration();
+      return NextBlock();
+    }
+    case Stage::kChoice:
+      return BeginCurves();
+    case Stage::kCurves:
+      return BeginProof();
+    case Stage::kProof:
+      break;
+  }
+  --stages_;
+  return {};
+}
+
+std::uint64_t RepairCourse::RunsPlanned() const {
+  return static_cast<std::uint64_t>(plan_.runs) + plan_.RunsOfCurves() + plan_.RunsOfProof();
+}
+
+}  // namespace gauntlet
