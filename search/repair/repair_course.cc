@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -18,11 +19,14 @@
 namespace gauntlet {
 namespace {
 
-constexpr double kFirstStep = 0.25;        // of a range
+constexpr double kFirstStep = 0.3;         // of a range
 constexpr std::size_t kGenerations = 16;   // that a budget is spent on, if it can be
+constexpr std::size_t kGuardsOf = 3;       // one of so many cases of a candidate is a guard
 constexpr std::size_t kFewestCases = 6;    // of a candidate
 constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
-constexpr double kMoreContacts = 1.0;      // times the original's
+constexpr std::size_t kFinalists = 8;      // of which the repaired settings are chosen
+constexpr std::uint64_t kChoiceOf = 6;     // a part of the budget is kept for it
+constexpr double kMoreContacts = 1.1;      // times the original's
 constexpr double kMoreTimeouts = 0.01;     // beside the original's share
 
 double Mean(double sum, int count) {
@@ -86,7 +90,8 @@ Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const 
   if (const auto* scenario = controllers::FindScenario(experiment))
     plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
   const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
-  const std::size_t least = plan.cases.training + plan.cases.guards + (candidates + 3) * kFewestCases;
+  const std::size_t least =
+      plan.cases.training + plan.cases.guards + (candidates + kFinalists) * kFewestCases;
   if (static_cast<std::size_t>(spec.runs) < least)
     return InvalidInput(
         fmt::format("--budget {}: at least {} runs are needed: the original controller in {} cases, "
@@ -171,13 +176,13 @@ RepairTally RepairCourse::Sum(std::size_t setting, std::span<const std::size_t> 
 }
 
 double RepairCourse::ScoreOf(std::size_t setting, std::span<const std::size_t> cases) const {
-  RepairTally training;
-  RepairTally guards;
-  for (const std::size_t one : cases)
-    (one < plan_.cases.training ? training : guards).Add(TallyOf(setting, one));
-  double score = training.Share() + guards.Share();
-  const RepairTally here = Sum(setting, cases);
-  const RepairTally there = Sum(kOriginal, cases);
+  // What fails touches little or much by chance: side effects are looked at in the guards.
+  std::vector<std::size_t> guards;
+  std::ranges::copy_if(cases, std::back_inserter(guards),
+                       [&](std::size_t one) { return one >= plan_.cases.training; });
+  const RepairTally here = Sum(setting, guards);
+  const RepairTally there = Sum(kOriginal, guards);
+  double score = Sum(setting, cases).Share();
   const double most = kMoreContacts * Mean(there.effects.contacts, there.counted);
   if (most > 0.0 && here.counted > 0)
     score += std::max(0.0, Mean(here.effects.contacts, here.counted) / most - 1.0);
@@ -210,7 +215,7 @@ void RepairCourse::BeginGeneration() {
   }
   racing_ = candidates_;
   const std::size_t each = RunsOfGeneration() / cma_.population();
-  const std::size_t guards = std::min(plan_.cases.guards, each / 3);
+  const std::size_t guards = std::min(plan_.cases.guards, each / kGuardsOf);
   const std::size_t training = std::min(plan_.cases.training, each - guards);
   const auto turn = static_cast<std::uint32_t>(++generations_);
   const auto failed = Shuffled(0, plan_.cases.training, plan_.seed, 2 * turn);
@@ -242,7 +247,7 @@ void RepairCourse::DropHopeless() {
   const auto left = static_cast<double>(cases_.size() - simulated_) / static_cast<double>(cases_.size());
   const double share = 1.0 - left;
   std::vector<double> worst;
-  for (const std::size_t one : racing_) worst.push_back(ScoreOf(one, seen) * share + 2.0 * left);
+  for (const std::size_t one : racing_) worst.push_back(ScoreOf(one, seen) * share + left);
   if (worst.size() <= cma_.parents()) return;
   std::ranges::nth_element(worst, worst.begin() + static_cast<std::ptrdiff_t>(cma_.parents()) - 1);
   const double bound = worst[cma_.parents() - 1];
@@ -258,17 +263,33 @@ void RepairCourse::EndGeneration() {
     return Better(candidates_[a], candidates_[b], cases_);
   });
   cma_.Tell(order);
-  chosen_from_ = {candidates_[order.front()]};
+  chosen_from_.push_back(candidates_[order.front()]);
 }
 
 std::vector<SettingsRun> RepairCourse::BeginChoice() {
   stage_ = Stage::kChoice;
-  const std::vector<KeyValue> best = settings_[chosen_from_.front()];
-  SettingsPoint place;
-  for (std::size_t i = 0; i < best.size(); ++i) place.push_back(plan_.varied[i].PlaceOf(best[i]));
-  chosen_from_ = {AddRounded(cma_.mean())};
-  if (const std::size_t rounded = AddRounded(place); rounded != chosen_from_.front())
-    chosen_from_.push_back(rounded);
+  const std::vector<std::size_t> best_of_generations = std::exchange(chosen_from_, {AddRounded(cma_.mean())});
+  const std::vector<std::size_t> cases = CurveCases();
+  for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
+    std::size_t best_alone = kOriginal;
+    for (const std::size_t one : curves_[key]) {
+      if (Sum(one, cases).Share() < Sum(best_alone, cases).Share()) best_alone = one;
+    }
+    if (best_alone != kOriginal) alone_[key] = best_alone;
+  }
+  // One of them may do as well as all together.
+  const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
+    return one ? Sum(*one, cases).Share() : 1.0;
+  });
+  if (*alone) chosen_from_.push_back(**alone);
+  for (auto best = best_of_generations.rbegin();
+       best != best_of_generations.rend() && chosen_from_.size() < kFinalists; ++best) {
+    SettingsPoint place;
+    for (std::size_t i = 0; i < plan_.varied.size(); ++i)
+      place.push_back(plan_.varied[i].PlaceOf(settings_[*best][i]));
+    const std::size_t rounded = AddRounded(place);
+    if (std::ranges::count(chosen_from_, rounded) == 0) chosen_from_.push_back(rounded);
+  }
   const std::size_t all = plan_.cases.training + plan_.cases.guards;
   const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
   const std::size_t each = std::min(all, std::max(kFewestCases, left / chosen_from_.size()));
@@ -290,8 +311,6 @@ std::vector<std::size_t> RepairCourse::CurveCases() const {
 
 std::vector<SettingsRun> RepairCourse::BeginCurves() {
   stage_ = Stage::kCurves;
-  repaired_ = *std::ranges::min_element(chosen_from_,
-                                        [&](std::size_t a, std::size_t b) { return Better(a, b, cases_); });
   std::vector<SettingsRun> runs;
   for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
     const VariedKey& varied = plan_.varied[key];
@@ -314,14 +333,10 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
 
 std::vector<SettingsRun> RepairCourse::BeginProof() {
   stage_ = Stage::kProof;
-  const std::vector<std::size_t> cases = CurveCases();
+  repaired_ = *std::ranges::min_element(chosen_from_,
+                                        [&](std::size_t a, std::size_t b) { return Better(a, b, cases_); });
   std::vector<std::size_t> in_held_out = {kOriginal, *repaired_};
   for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
-    std::size_t best = kOriginal;
-    for (const std::size_t one : curves_[key]) {
-      if (Sum(one, cases).Share() < Sum(best, cases).Share()) best = one;
-    }
-    if (best != kOriginal) alone_[key] = best;
     std::vector<KeyValue> all_but = settings_[*repaired_];
     if (all_but[key] != plan_.original[key]) {
       all_but[key] = plan_.original[key];
@@ -369,15 +384,15 @@ std::vector<SettingsRun> RepairCourse::Next() {
       DropHopeless();
       if (simulated_ < cases_.size()) return NextBlock();
       EndGeneration();
-      const std::uint64_t choice = 2 * RunsOfGeneration() / cma_.population();
+      const std::uint64_t choice = static_cast<std::uint64_t>(plan_.runs) / kChoiceOf;
       if (searched_ + RunsOfGeneration() + choice > static_cast<std::uint64_t>(plan_.runs))
-        return BeginChoice();
+        return BeginCurves();
       BeginGeneration();
       return NextBlock();
     }
-    case Stage::kChoice:
-      return BeginCurves();
     case Stage::kCurves:
+      return BeginChoice();
+    case Stage::kChoice:
       return BeginProof();
     case Stage::kProof:
       break;

@@ -68,18 +68,21 @@ std::size_t CasesIn(const std::vector<CaseUnit>& units) {
   return cases;
 }
 
-// Two halves of whole units; of a single unit two halves of its cases.
+// Two halves of whole units; of all cases as a single unit where too few would judge otherwise.
 std::pair<std::vector<CaseUnit>, std::vector<CaseUnit>> Halves(std::vector<CaseUnit> units) {
-  if (units.size() == 1) {
-    CaseUnit& all = units.front();
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>((all.size() + 1) / 2);
-    return {{CaseUnit(all.begin(), middle)}, {CaseUnit(middle, all.end())}};
-  }
   std::vector<CaseUnit> halves[2];
   std::ranges::stable_sort(units, std::greater(), &CaseUnit::size);
   for (CaseUnit& one : units)
     halves[CasesIn(halves[0]) <= CasesIn(halves[1]) ? 0 : 1].push_back(std::move(one));
-  return {std::move(halves[0]), std::move(halves[1])};
+  if (CasesIn(halves[1]) >= kFewestCases) return {std::move(halves[0]), std::move(halves[1])};
+  CaseUnit all;
+  for (std::vector<CaseUnit>& half : halves) {
+    for (CaseUnit& one : half) std::ranges::move(one, std::back_inserter(all));
+  }
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>((all.size() + 1) / 2);
+  std::vector<CaseUnit> judging;
+  if (middle != all.end()) judging.emplace_back(middle, all.end());
+  return {{CaseUnit(all.begin(), middle)}, std::move(judging)};
 }
 
 }  // namespace

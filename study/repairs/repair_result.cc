@@ -335,12 +335,15 @@ std::string OutcomeOf(const Repair& repair) {
     return fmt::format(
         "Mended: of held-out runs {} fail with the repaired parameters, {} with the original ones.",
         ShareText(change->after), ShareText(change->before));
+  if (change->less >= kLeastGain)
+    return fmt::format(
+        "Not shown to be mended: held-out failures are fewer by {} ({}, 95 %), which with {} may be chance.",
+        ShareText(change->less), IntervalText(change->less_interval), Counted(change->cases, "case"));
   return fmt::format(
-      "Not mended by its parameters: held-out failures are fewer by {} ({}, 95 %), which is {}. Its rules "
-      "have to "
-      "change.",
-      ShareText(change->less), IntervalText(change->less_interval),
-      change->less < kLeastGain ? "less than 5 %" : "within chance");
+      "Not mended by its parameters: held-out failures are fewer by {} ({}, 95 %), which is less than 5 %. "
+      "Its rules "
+      "have to change.",
+      ShareText(change->less), IntervalText(change->less_interval));
 }
 
 std::string RepairedToml(const Repair& repair, const std::string& dir) {

@@ -161,7 +161,7 @@ TEST(RepairCourse, SaysWhatIsWrongWithAPlan) {
               HasSubstr("the controller has 0.5, which is not in this range"));
   EXPECT_EQ(
       PlanOf(Broken(50)).error().message,
-      "--budget 50: at least 100 runs are needed: the original controller in 40 cases, and one generation");
+      "--budget 50: at least 130 runs are needed: the original controller in 40 cases, and one generation");
   EXPECT_FALSE(PlanOf(Broken(), 30).ok());
 }
 
