@@ -14,10 +14,9 @@ sim::RunResult Run(const sim::RunSpec& spec) {
     sim::SetHashes(refused);
     return refused;
   }
-  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory,
-                       {.physics = spec.physics,
-                        .disturbances = spec.disturbances,
-                        .count_contacts = spec.count_contacts});
+  return sim::Simulate(
+      *scenario.value(), spec.seed, spec.record_trajectory,
+      {.physics = spec.physics, .disturbances = spec.disturbances, .count_contacts = spec.count_contacts});
 }
 
 }  // namespace gauntlet::worker
