@@ -227,8 +227,8 @@ failing cases, and fresh random ones, take no part and judge. Contacts of the ro
 the time limit by a hundredth.
 
 Then it explains: each parameter alone at nine values, and the repaired parameters without each. Exit 1 when held-out
-failures are fewer by less than 5 %, or within chance: then its parameters do not mend the controller, its rules have
-to change. In place of EXPERIMENT may stand the directory of such a campaign, to tell it again.
+failures are fewer by less than 5 % (its parameters do not mend the controller, its rules have to change), and where
+it is not shown that they are fewer: within chance, or in less than ten held-out cases. In place of EXPERIMENT may stand the directory of such a campaign, to tell it again.
 
 Examples:
   gauntlet repair flocking --from campaigns/a,campaigns/b --dir campaigns/repair

@@ -22,10 +22,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLeastGain = 0.05;  // of held-out failure probability, below which nothing is mended
-constexpr double kNoEffect = 0.03;   // a change of failure probability that is told as none
-constexpr double kMatters = 0.1;     // one that is told as an effect of the parameter alone
-constexpr double kAtBound = 0.02;    // of the range
+constexpr double kLeastGain = 0.05;        // of held-out failure probability, below which nothing is mended
+constexpr std::size_t kFewestJudges = 10;  // held-out cases, below which nothing is shown
+constexpr double kNoEffect = 0.03;         // a change of failure probability that is told as none
+constexpr double kMatters = 0.1;           // one that is told as an effect of the parameter alone
+constexpr double kAtBound = 0.02;          // of the range
 constexpr std::size_t kMostNamedCases = 8;
 constexpr std::size_t kFewestUnitsOfIntervals = 10;
 
@@ -304,7 +305,8 @@ std::vector<RepairedKey> KeysOf(const Repair& repair) {
 
 bool IsMended(const Repair& repair) {
   const auto change = ChangeInHeldOut(repair);
-  return change && change->less >= kLeastGain && change->less_interval.low > 0.0;
+  return change && change->cases >= kFewestJudges && change->less >= kLeastGain &&
+         change->less_interval.low > 0.0;
 }
 
 std::vector<RepairLevel> RepairCurve(const Repair& repair, std::size_t key) {

@@ -67,7 +67,7 @@ Table RepairCurveTable(const Repair& repair, std::size_t key);
 
 // Whether it is mended, and by how much: a sentence.
 std::string OutcomeOf(const Repair& repair);
-// Whether held-out failures became rarer by at least .05, beyond chance.
+// Whether failures became rarer by at least .05, beyond chance, in ten held-out cases or more.
 bool IsMended(const Repair& repair);
 // The experiment with the repaired parameters, as a file.
 std::string RepairedToml(const Repair& repair, const std::string& dir);
