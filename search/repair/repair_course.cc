@@ -1,7 +1,6 @@
 #include "search/repair/repair_course.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -335,7 +334,9 @@ std::vector<SettingsRun> RepairCourse::BeginProof() {
   stage_ = Stage::kProof;
   repaired_ = *std::ranges::min_element(chosen_from_,
                                         [&](std::size_t a, std::size_t b) { return Better(a, b, cases_); });
-  std::vector<std::size_t> in_held_out = {kOriginal, *repaired_};
+  std::vector<std::size_t> in_all = {kOriginal};
+  if (*repaired_ != kOriginal) in_all.push_back(*repaired_);
+  std::vector<std::size_t> in_held_out = in_all;
   for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
     std::vector<KeyValue> all_but = settings_[*repaired_];
     if (all_but[key] != plan_.original[key]) {
@@ -347,7 +348,7 @@ std::vector<SettingsRun> RepairCourse::BeginProof() {
     }
   }
   // What the search has seen of these counts no more.
-  for (const std::size_t setting : {kOriginal, *repaired_}) {
+  for (const std::size_t setting : in_all) {
     for (std::size_t i = 0; i < plan_.cases.training; ++i) tallies_[setting].erase(i);
   }
   std::vector<SettingsRun> runs;
@@ -358,8 +359,7 @@ std::vector<SettingsRun> RepairCourse::BeginProof() {
   };
   for (const std::size_t setting : in_held_out)
     ask(setting, plan_.cases.first_held_out(), plan_.cases.held_out(), RepairPlan::kProofRuns);
-  for (const std::size_t setting : std::array{kOriginal, *repaired_}) {
-    if (setting == kOriginal && *repaired_ == kOriginal) continue;
+  for (const std::size_t setting : in_all) {
     ask(setting, 0, plan_.cases.training, RepairPlan::kProofRuns);
     ask(setting, plan_.cases.first_random(), plan_.cases.random, 1);
   }

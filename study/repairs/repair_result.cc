@@ -126,6 +126,10 @@ std::string ShareText(double share) {
   return fmt::format("{:.1f} %", 100.0 * share);
 }
 
+Cell ShareCell(double share) {
+  return {ShareText(share), share};
+}
+
 std::string IntervalText(const analysis::Interval& interval) {
   return fmt::format("{:.1f} to {:.1f} %", 100.0 * interval.low, 100.0 * interval.high);
 }
@@ -153,9 +157,8 @@ Table ChangeTable(const Repair& repair) {
     const auto interval = [](const analysis::Interval& one) {
       return Cell(IntervalText(one), std::make_shared<const Json>(Json{one.low, one.high}));
     };
-    const auto share = [](double one) { return Cell(ShareText(one), one); };
-    table.AddRow({what, change->cases, share(change->before), interval(change->before_interval),
-                  share(change->after), interval(change->after_interval), share(change->less),
+    table.AddRow({what, change->cases, ShareCell(change->before), interval(change->before_interval),
+                  ShareCell(change->after), interval(change->after_interval), ShareCell(change->less),
                   interval(change->less_interval)});
   };
   add("held out", ChangeInHeldOut(repair));
@@ -179,9 +182,8 @@ Table KeysTable(const Repair& repair) {
       return Cell(ValueText(held), number == nullptr ? Value(ToSet(held)) : Value(*number));
     };
     table.AddRow({ShortName(one.key), value(one.original), value(one.repaired),
-                  one.alone ? value(*one.alone) : Cell(),
-                  Cell(ShareText(one.failing_alone), one.failing_alone),
-                  Cell(ShareText(one.failing_without), one.failing_without), one.mended_alone,
+                  one.alone ? value(*one.alone) : Cell(), ShareCell(one.failing_alone),
+                  ShareCell(one.failing_without), one.mended_alone,
                   Cell(fmt::format("{}", fmt::join(one.flags, ", ")))});
   }
   return table;
