@@ -36,7 +36,7 @@ struct SearchRow {
   // What an experiment makes it do, behind the title: "20 test cases x 50 generations".
   std::string (*plan)(const Experiment& experiment) = nullptr;
   // Error: the ranges of genes leave no room for a valid case, or there is nothing to search.
-  Result<std::unique_ptr<SearchAlgorithm>> (*make)(const SearchSetup& setup) = nullptr;
+  Result<std::unique_ptr<SearchAlgorithm>> (*make)(SearchSetup setup) = nullptr;
   sim::SeedPurpose purpose = sim::SeedPurpose::kSearch;  // of the seeds of its runs
   // Of a search through SearchSetup::cases, which `command` alone makes: what it asks of a case.
   std::unique_ptr<LayoutQuestion> (*question)(const Experiment& experiment,
@@ -61,8 +61,8 @@ struct SearchRow {
 
 // SearchRow::make of a class with a static Create, which takes Options too.
 template <typename Search, auto... Options>
-Result<std::unique_ptr<SearchAlgorithm>> Make(const SearchSetup& setup) {
-  TRY(auto search, Search::Create(setup, Options...));
+Result<std::unique_ptr<SearchAlgorithm>> Make(SearchSetup setup) {
+  TRY(auto search, Search::Create(std::move(setup), Options...));
   return std::unique_ptr<SearchAlgorithm>(std::move(search));
 }
 

@@ -5,10 +5,10 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <unordered_map>
 
 #include "controllers/registry.h"
 #include "master/campaign/state_digest.h"
+#include "master/campaign/stored_check.h"
 #include "master/campaign/stored_search.h"
 #include "master/campaign/verdict_text.h"
 #include "master/store/event_kinds.h"
@@ -91,32 +91,38 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
   return encoder.Take();
 }
 
-struct RunsOfCase {
-  std::vector<RunId> ids;
-  std::uint64_t failing = 0;
+struct RunOfCase {
+  IndividualId individual = 0;
+  RunId id = 0;
+  bool failing = false;
 };
 
 // Brings the search to its newest state, and takes everything that is told of its stored runs.
-Result<SavedProgress> RestoreAndAddRuns(const Experiment& experiment, SearchId id, ResultStore& store,
+Result<SavedProgress> RestoreAndAddRuns(const SearchPlan& plan, ResultStore& store, bool check,
                                         SearchAlgorithm& search, SearchSummary& summary,
-                                        std::unordered_map<IndividualId, RunsOfCase>& runs_of) {
+                                        std::vector<RunOfCase>& runs_of) {
+  const Experiment& experiment = plan.experiment;
+  std::optional<RowCheck> rows;
+  if (check) {
+    TRY(rows, RowCheck::Begin(plan, store));
+  }
   const std::string_view failing = FailingOf(experiment);
   std::map<std::uint32_t, GenerationSummary> generations;
   const auto add = [&](const StoredRun& run, const RunOutcome& outcome) -> Status {
+    if (rows) {
+      TRY(rows->Take(run));
+    }
     const bool completed = outcome.verdict == sim::Verdict::kCompleted;
     GenerationSummary& generation = generations[run.generation];
     generation.generation = run.generation;
     ++generation.runs;
     ++summary.runs_done;
-    RunsOfCase& of_case = runs_of[run.individual];
-    of_case.ids.push_back(run.id);
+    const bool fails = completed && Fails(outcome, failing);
+    runs_of.push_back({run.individual, run.id, fails});
     if (completed) generation.fitness.Add(run.fitness);
     if (!completed) ++summary.runs_failed;
     if (!completed) AddToRunsWithoutResult(run, summary.runs_without_result);
-    if (completed && Fails(outcome, failing)) {
-      ++summary.failing_runs;
-      ++of_case.failing;
-    }
+    if (fails) ++summary.failing_runs;
     if (!run.total_failure) return Ok{};
     ++summary.total_failures;
     ++generation.total_failures;
@@ -127,15 +133,19 @@ Result<SavedProgress> RestoreAndAddRuns(const Experiment& experiment, SearchId i
     }
     return Ok{};
   };
-  TRY(SavedProgress saved, RestoreSearch(id, store, search, {add, FailingNeedsMetrics(failing)}));
+  TRY(SavedProgress saved,
+      RestoreSearch(plan.id, store, search,
+                    {.take = add, .with_metrics = FailingNeedsMetrics(failing), .end = [&] {
+                       return rows ? rows->End() : Status(Ok{});
+                     }}));
   std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
   for (auto& [number, generation] : generations) summary.generations.push_back(generation);
   return saved;
 }
 
 // `stored`: nullptr when the store does not know the search.
-Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch* stored,
-                                      ResultStore& store) {
+Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch* stored, ResultStore& store,
+                                      bool check) {
   const Experiment& experiment = plan.experiment;
   SearchSummary summary = Described(experiment);
   std::unique_ptr<SearchAlgorithm> search;
@@ -144,8 +154,8 @@ Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch
     summary.distinct_individuals = CountDistinctGenomes(individuals);
     TRY(search, MakeStoredSearch(plan, std::move(individuals)));
   }
-  std::unordered_map<IndividualId, RunsOfCase> runs_of;
-  TRY(const SavedProgress saved, RestoreAndAddRuns(experiment, plan.id, store, *search, summary, runs_of));
+  std::vector<RunOfCase> runs_of;
+  TRY(const SavedProgress saved, RestoreAndAddRuns(plan, store, check, *search, summary, runs_of));
   summary.settings = plan.settings;
   summary.progress = search->Progress();
   summary.archive = search->Archive();
@@ -156,13 +166,18 @@ Result<SearchSummary> SummariseSearch(const SearchPlan& plan, const StoredSearch
   summary.state_hash = StateHash(EncodeExperiment(experiment), saved.results,
                                  EncodePopulation(search->Population()), saved.state);
   summary.finished = stored != nullptr && HasFinished(*stored, experiment, *search);
+  std::ranges::stable_sort(runs_of, {}, &RunOfCase::individual);
   std::vector<Individual> population = search->TakePopulation();
   summary.population.reserve(population.size());
   for (Individual& one : population) {
-    RunsOfCase& runs = runs_of[one.id];
-    summary.population.push_back({one.id, std::move(one.parents), one.birth_generation, one.fitness,
-                                  std::move(one.test_case.obstacles), std::move(runs.ids),
-                                  std::move(one.test_case.name), runs.failing});
+    PopulationMember& member = summary.population.emplace_back(PopulationMember{
+        one.id, std::move(one.parents), one.birth_generation, one.fitness, std::move(one.test_case.obstacles),
+        std::vector<RunId>(), std::move(one.test_case.name)});
+    auto run = std::ranges::lower_bound(runs_of, one.id, {}, &RunOfCase::individual);
+    for (; run != runs_of.end() && run->individual == one.id; ++run) {
+      member.runs.push_back(run->id);
+      if (run->failing) ++member.failing_runs;
+    }
     if (std::isfinite(one.fitness)) summary.fitness.Add(one.fitness);
   }
   return summary;
@@ -238,12 +253,15 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
   return all;
 }
 
-Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
+namespace {
+
+Result<CampaignSummary> SummariseAll(const std::vector<SearchPlan>& plans, ResultStore& store, bool check) {
   TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
   std::vector<SearchSummary> searches;
   for (const SearchPlan& plan : plans) {
     const auto known = std::ranges::find(stored, plan.id, &StoredSearch::id);
-    TRY(SearchSummary summary, SummariseSearch(plan, known == stored.end() ? nullptr : &*known, store));
+    TRY(SearchSummary summary,
+        SummariseSearch(plan, known == stored.end() ? nullptr : &*known, store, check));
     searches.push_back(std::move(summary));
   }
   CampaignSummary all = TotalsOf(plans, {searches.begin(), searches.end()});
@@ -252,6 +270,16 @@ Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultSt
   TRY(all.lone_verdicts, CountLoneVerdicts(store));
   TRY(all.reproducibility, ReadReproducibility(plans, store));
   return all;
+}
+
+}  // namespace
+
+Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  return SummariseAll(plans, store, /*check=*/false);
+}
+
+Result<CampaignSummary> CheckAndSummarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  return SummariseAll(plans, store, /*check=*/true);
 }
 
 }  // namespace gauntlet

@@ -101,6 +101,8 @@ Result<std::uint64_t> CountLoneVerdicts(ResultStore& store);
 // What is stored: population, fitness figures and state_hash are those of the last complete generation; runs
 // and failures count everything.
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store);
+// The same of a store whose rows were not held against one another yet: they are on the way (RowCheck).
+Result<CampaignSummary> CheckAndSummarise(const std::vector<SearchPlan>& plans, ResultStore& store);
 // How far all searches together have come and what they have met, without a look at a single run: the fields
 // of a summary that `status` tells.
 Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store);

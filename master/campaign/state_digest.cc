@@ -17,13 +17,24 @@ constexpr std::uint64_t kDigestFormat = 1;
 using Digest = std::array<unsigned char, 32>;
 
 // BLAKE2b with 32 bytes of output and no key.
-Digest HashOf(const std::string& bytes) {
-  Digest digest{};
-  GAUNTLET_CHECK(sodium_init() >= 0, "libsodium does not start");
-  crypto_generichash(digest.data(), digest.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
-                     bytes.size(), nullptr, 0);
-  return digest;
-}
+class StreamedHash {
+ public:
+  StreamedHash() {
+    GAUNTLET_CHECK(sodium_init() >= 0, "libsodium does not start");
+    crypto_generichash_init(&state_, nullptr, 0, Digest().size());
+  }
+  void Add(std::string_view bytes) {
+    crypto_generichash_update(&state_, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  }
+  Digest Take() {
+    Digest digest{};
+    crypto_generichash_final(&state_, digest.data(), digest.size());
+    return digest;
+  }
+
+ private:
+  crypto_generichash_state state_;
+};
 
 }  // namespace
 
@@ -52,20 +63,26 @@ void ResultsDigest::Add(const StoredRun& run) {
   encoder.Uint(run.seed);
   encoder.Uint(run.hash);
   encoder.Int(static_cast<int>(run.verdict));
-  digest_ = HashOf(encoder.bytes());
+  StreamedHash hash;
+  hash.Add(encoder.bytes());
+  digest_ = hash.Take();
 }
 
 std::string StateHash(std::string_view experiment, const ResultsDigest& results, std::string_view population,
                       std::string_view search_state) {
-  CanonicalEncoder encoder;
-  encoder.Reserve(experiment.size() + population.size() + search_state.size() + 1024);
-  encoder.Uint(kDigestFormat);
-  encoder.String(experiment);
-  encoder.String(results.bytes());
-  encoder.String(population);
-  encoder.String(search_state);
+  CanonicalEncoder format;
+  format.Uint(kDigestFormat);
+  StreamedHash hash;
+  hash.Add(format.bytes());
+  const std::string digest = results.bytes();
+  for (const std::string_view part : {experiment, std::string_view(digest), population, search_state}) {
+    CanonicalEncoder size;
+    size.Uint(part.size());
+    hash.Add(size.bytes());
+    hash.Add(part);
+  }
   std::string hex;
-  for (const unsigned char byte : HashOf(encoder.bytes())) hex += fmt::format("{:02x}", byte);
+  for (const unsigned char byte : hash.Take()) hex += fmt::format("{:02x}", byte);
   return hex;
 }
 

@@ -91,48 +91,62 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
       experiment.seed));
 }
 
-Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
-  const SearchId search = plan.id;
-  TRY(std::vector<StoredSearch> searches, store.LoadSearches());
-  RunId finished_with = 0;
+Result<RowCheck> RowCheck::Begin(const SearchPlan& plan, ResultStore& store) {
+  RowCheck check;
+  check.experiment_ = &plan.experiment;
+  check.expected_ = RunIdOf(plan.id, 1);
+  TRY(const std::vector<StoredSearch> searches, store.LoadSearches());
   for (const StoredSearch& stored : searches) {
-    if (stored.id == search) finished_with = stored.finished_with;
+    if (stored.id == plan.id) check.finished_with_ = stored.finished_with;
   }
-  TRY(std::optional<SavedState> state, store.LoadNewestState(search));
-  if (finished_with > 0 && !state.has_value())
+  TRY(const std::optional<SavedState> state, store.LoadNewestState(plan.id));
+  if (check.finished_with_ > 0 && !state.has_value())
     return Damaged("the search has finished, but its states are missing");
-  const RunId last_seen = state.has_value() ? state->last_run : 0;
+  if (state.has_value()) {
+    check.last_seen_ = state->last_run;
+    check.generation_ = state->generation;
+  }
+  return check;
+}
 
+Status RowCheck::Take(const StoredRun& run) {
+  if (run.id != expected_ && expected_ <= last_seen_) return Missing(expected_);
+  expected_ = run.id + 1;
+  return CheckSeed(*experiment_, run);
+}
+
+Status RowCheck::End() const {
+  if (expected_ <= last_seen_) return Missing(expected_);
+  if (finished_with_ <= last_seen_) return Ok{};
+  return Damaged(
+      fmt::format("the search has finished with run {}, but the newest state has seen only the runs up to {}",
+                  proto::RunText(finished_with_), proto::RunText(last_seen_)));
+}
+
+Error RowCheck::Missing(RunId run) const {
+  return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
+                             proto::RunText(run), generation_, proto::RunText(last_seen_)));
+}
+
+Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
+  TRY(RowCheck rows, RowCheck::Begin(plan, store));
   const bool everything = what == Checked::kEverything;
   std::map<IndividualId, sim::TestCase> test_cases;
   if (everything) {
-    TRY(std::vector<Individual> individuals, store.LoadIndividuals(search));
+    TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
     for (Individual& individual : individuals)
       test_cases.emplace(individual.id, std::move(individual.test_case));
   }
-  const auto missing = [&](RunId run) {
-    return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
-                               proto::RunText(run), state->generation, proto::RunText(last_seen)));
-  };
-  RunId expected = RunIdOf(search, 1);
   const auto check = [&](const StoredRun& run) -> Status {
-    if (run.id != expected && expected <= last_seen) return missing(expected);
-    expected = run.id + 1;
-    TRY(CheckSeed(plan.experiment, run));
+    TRY(rows.Take(run));
     if (!everything) return Ok{};
     TRY(CheckRecord(run));
     TRY(CheckTestCase(test_cases, run));
     test_cases.erase(run.individual);
     return Ok{};
   };
-  TRY(everything ? store.ForEachRun(search, 0, check) : store.ForEachRow(search, 0, check));
-  if (expected <= last_seen) return missing(expected);
-  if (finished_with > last_seen) {
-    return Damaged(fmt::format(
-        "the search has finished with run {}, but the newest state has seen only the runs up to {}",
-        proto::RunText(finished_with), proto::RunText(last_seen)));
-  }
-  return Ok{};
+  TRY(everything ? store.ForEachRun(plan.id, 0, check) : store.ForEachRow(plan.id, 0, check));
+  return rows.End();
 }
 
 Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store, Checked what) {

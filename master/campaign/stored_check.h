@@ -19,8 +19,27 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result);
 // Error: kCorrupt, naming the run.
 Status CheckSeed(const Experiment& experiment, const StoredRun& run);
 
-// All runs of a search against their seeds and against the newest state (no run that it has seen is missing;
-// of a finished search it has seen all); with kEverything also against their own results and specs, and
+// The rows of a search, one after the other: each against its seed, and all against the newest state, which
+// has seen none that is missing (of a finished search it has seen all).
+class RowCheck {
+ public:
+  static Result<RowCheck> Begin(const SearchPlan& plan, ResultStore& store);
+
+  // Errors: kCorrupt, naming the first damage.
+  Status Take(const StoredRun& run);
+  Status End() const;
+
+ private:
+  Error Missing(RunId run) const;
+
+  const Experiment* experiment_ = nullptr;  // the plan's
+  RunId finished_with_ = 0;
+  RunId last_seen_ = 0;
+  std::uint32_t generation_ = 0;
+  RunId expected_ = 0;
+};
+
+// All rows of a search (RowCheck); with kEverything also the runs against their own results and specs, and
 // against the individuals' test cases, for which every run is decoded once. Error: kCorrupt, naming the first
 // damage; or reading failed.
 Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what = Checked::kEverything);

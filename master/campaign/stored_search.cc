@@ -28,6 +28,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
                  "the campaign was stopped before its cases were stored: evaluate them anew"};
   }
   std::vector<sim::TestCase> cases;
+  cases.reserve(individuals.size());
   for (Individual& individual : individuals) {
     if (!handed && individual.id != cases.size() + 1) break;  // those behind a gap are drawn
     if (individual.parents.empty())
@@ -69,6 +70,9 @@ Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgor
       return Ok{};
     };
     TRY(with_metrics || with_ways ? store.ForEachRun(id, 0, visit) : store.ForEachRow(id, 0, visit));
+    if (!read && reader.end) {
+      TRY(reader.end());
+    }
     read = true;
     return Ok{};
   };

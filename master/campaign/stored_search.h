@@ -1,6 +1,7 @@
 // The search of a stored campaign: made, and brought to where its newest state stands.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -39,6 +40,7 @@ struct SavedProgress {
 struct RunReader {
   std::function<Status(const StoredRun& run, const RunOutcome& outcome)> take = nullptr;
   bool with_metrics = false;
+  std::function<Status()> end = nullptr;  // when all were taken
 };
 // Brings a search that was just made to its newest state. Error: the state or the runs that it has seen
 // cannot be read, or do not fit the search (SearchAlgorithm::Restore); that of `reader`.

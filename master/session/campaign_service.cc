@@ -11,7 +11,6 @@
 #include "base/system/regular_file.h"
 #include "controllers/command/definition.h"
 #include "controllers/registry.h"
-#include "master/campaign/stored_campaign.h"
 #include "master/campaign/stored_check.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/directory/campaign_plugins.h"
@@ -212,9 +211,10 @@ class Campaigns final : public CampaignService {
   }
 
   Result<CampaignSummary> Read(const std::string& dir) override {
-    TRY(const StoredCampaign campaign, OpenStoredCampaign(dir));
-    TRY(CampaignSummary summary, Summarise(campaign.plans, *campaign.view.store));
-    summary.as_of = campaign.view.as_of;
+    TRY(const CampaignView campaign, ViewCampaign(dir, Checked::kRows));
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
+    TRY(CampaignSummary summary, CheckAndSummarise(plans, *campaign.store));
+    summary.as_of = campaign.as_of;
     return summary;
   }
 

@@ -312,11 +312,13 @@ Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
                                                   "id"));
   query.Bind(search);
   std::vector<Individual> individuals;
+  if (const auto totals = totals_.all().find(search); totals != totals_.all().end())
+    individuals.reserve(totals->second.individuals);
+  std::string parents;
+  std::string test_case;
+  std::uint64_t checksum = 0;
   TRY(query.ForEachRow([&]() -> Status {
     Individual& individual = individuals.emplace_back();
-    std::string parents;
-    std::string test_case;
-    std::uint64_t checksum = 0;
     query.Read(individual.id, individual.birth_generation, parents, test_case, checksum);
     Result<std::string> unpacked = specs_.Unpack(test_case);
     if (unpacked) test_case = *std::move(unpacked);

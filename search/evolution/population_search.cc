@@ -105,13 +105,13 @@ std::uint64_t CountDistinctGenomes(const std::vector<Individual>& individuals) {
   return static_cast<std::uint64_t>(std::unique(genomes.begin(), genomes.end()) - genomes.begin());
 }
 
-PopulationSearch::PopulationSearch(const SearchSetup& setup)
-    : setup_(setup),
-      generator_(MakeGenerator(setup)),
-      search_seed_(SearchSeed(setup)),
-      objective_(Reads(setup.row->info, "search.objective") ? ObjectiveOf(setup.experiment.search)
-                                                            : Objective::kFitness),
-      identity_(SearchIdentity(setup)) {}
+PopulationSearch::PopulationSearch(SearchSetup setup)
+    : setup_(std::move(setup)),
+      generator_(MakeGenerator(setup_)),
+      search_seed_(SearchSeed(setup_)),
+      objective_(Reads(setup_.row->info, "search.objective") ? ObjectiveOf(setup_.experiment.search)
+                                                             : Objective::kFitness),
+      identity_(SearchIdentity(setup_)) {}
 
 Individual PopulationSearch::MakeIndividual(IndividualId id, sim::TestCase test_case) {
   Individual individual;

@@ -39,7 +39,7 @@ class PopulationSearch : public SearchAlgorithm {
   Status Restore(CanonicalDecoder& decoder, const History& history) final;
 
  protected:
-  explicit PopulationSearch(const SearchSetup& setup);
+  explicit PopulationSearch(SearchSetup setup);
 
   // An outcome in its turn; evaluations_done_ counts it already.
   virtual void Told(const EvaluationOutcome& outcome) = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/number_text.h"
 
@@ -20,8 +21,8 @@ std::uint64_t PlannedCases(const Experiment& experiment) {
 
 }  // namespace
 
-Result<std::unique_ptr<RandomSearch>> RandomSearch::Create(const SearchSetup& setup) {
-  std::unique_ptr<RandomSearch> search(new RandomSearch(setup));
+Result<std::unique_ptr<RandomSearch>> RandomSearch::Create(SearchSetup setup) {
+  std::unique_ptr<RandomSearch> search(new RandomSearch(std::move(setup)));
   for (IndividualId id = 1; id <= std::min(kTrialCases, search->Planned()); ++id) {
     TRY(search->DrawCase(id));
   }

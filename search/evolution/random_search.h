@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <utility>
 
 #include "search/evolution/population_search.h"
 #include "search/search_row.h"
@@ -20,7 +21,7 @@ class RandomSearch : public PopulationSearch {
   static constexpr std::uint64_t kSaveInterval = 1000;  // outcomes from boundary to boundary
 
   // Draws the first cases as a trial. Error: the ranges leave no room for a valid case.
-  static Result<std::unique_ptr<RandomSearch>> Create(const SearchSetup& setup);
+  static Result<std::unique_ptr<RandomSearch>> Create(SearchSetup setup);
 
   std::vector<EvaluationRequest> Ask() override;
   SearchProgress Progress() const override;
@@ -28,7 +29,7 @@ class RandomSearch : public PopulationSearch {
   bool AtBoundary() const override;
 
  private:
-  explicit RandomSearch(const SearchSetup& setup) : PopulationSearch(setup) {}
+  explicit RandomSearch(SearchSetup setup) : PopulationSearch(std::move(setup)) {}
 
   void Told(const EvaluationOutcome& outcome) override;
   Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
