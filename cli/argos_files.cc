@@ -131,4 +131,20 @@ Result<ArgosFilesReport> WriteArgosFiles(const StoredCampaign& campaign, const A
   return report;
 }
 
+Result<std::string> ControllersWithParameters(const sim::RunSpec& spec, const ArgosFilesOptions& options) {
+  if (spec.scenario != controllers::command::kScenario) {
+    TRY(std::optional<ArgosControllers> own, ControllersOf(options));
+    if (!own) return std::string();
+    const std::string sections = WithParameters(std::move(*own), spec.controller_parameters).sections;
+    return fmt::format("<controllers>\n{}\n</controllers>\n", sections);
+  }
+  const Result<ArgosFile> file = FileOfCommand(0, spec);
+  if (!file) return std::string();  // a program that is given another file
+  constexpr std::string_view kEnd = "</controllers>";
+  const std::size_t begin = file->text.find("<controllers");
+  const std::size_t end = file->text.find(kEnd, begin);
+  if (begin == std::string::npos || end == std::string::npos) return std::string();
+  return file->text.substr(begin, end + kEnd.size() - begin) + "\n";
+}
+
 }  // namespace gauntlet

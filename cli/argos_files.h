@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "master/campaign/stored_campaign.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet {
 
@@ -28,5 +29,9 @@ struct ArgosFilesReport {
 // has no file, and a notice says so.
 Result<ArgosFilesReport> WriteArgosFiles(const StoredCampaign& campaign, const ArgosFilesOptions& options,
                                          const std::filesystem::path& directory);
+
+// The <controllers> of ARGoS with the parameters of a run: of an adopted project those of its own file, else
+// those of the options' controller_file; "" when there is none. Error: as WriteArgosFiles has it.
+Result<std::string> ControllersWithParameters(const sim::RunSpec& spec, const ArgosFilesOptions& options);
 
 }  // namespace gauntlet

@@ -12,13 +12,16 @@
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "base/system/atomic_file.h"
+#include "cli/argos_files.h"
 #include "cli/commands.h"
 #include "cli/output/output_file.h"
 #include "cli/run_campaign.h"
 #include "master/directory/campaign_directory.h"
+#include "search/search_setup.h"
 #include "search/search_table.h"
 #include "study/questions/empty_arena.h"
 #include "study/repairs/repair_cases.h"
+#include "study/repairs/repair_corpus.h"
 #include "study/repairs/repair_result.h"
 
 namespace gauntlet {
@@ -36,11 +39,14 @@ struct RepairOptions : LocalOptions {
   std::vector<std::string> vary;
   std::string budget;
   std::string random;
+  std::string fresh;
   std::string output;
+  ArgosFilesOptions argos;
 
   bool AsksNothing() const {
     return corpus.empty() && from.empty() && held_out.empty() && parameters.empty() && freeze.empty() &&
-           vary.empty() && budget.empty() && random.empty() && experiment.sets.empty() && !dry_run;
+           vary.empty() && budget.empty() && random.empty() && fresh.empty() && experiment.sets.empty() &&
+           !dry_run;
   }
 };
 
@@ -128,6 +134,7 @@ Result<SearchPlan> PlanRepair(CommandContext& context, const RepairOptions& opti
         "which cases are to be mended? --corpus FOLDER, or --from DIR of campaigns that found some");
   std::vector<ExtraSet> extra = {{"repair", "search.replicates", "1"}};
   if (!options.budget.empty()) extra.push_back({"--budget", "repair.runs", options.budget});
+  if (!options.fresh.empty()) extra.push_back({"--fresh", "repair.fresh", options.fresh});
   TRY(Experiment experiment, LoadExperimentWith(options.experiment, extra));
   experiment.repair.search = experiment.search.algorithm;
   experiment.search.algorithm = "repair";
@@ -146,10 +153,13 @@ Result<SearchPlan> PlanRepair(CommandContext& context, const RepairOptions& opti
   TRY(const auto search, MakeSearch(plan.experiment, plan.cases));
   const RepairPlan& repair = search->Repair()->plan();
   if (options.dry_run) {
-    PrintMessage(context, fmt::format("{} varied; of the runs {} search, {} draw the curves, {} prove",
+    const auto fresh = static_cast<std::uint64_t>(plan.experiment.repair.fresh);
+    PrintMessage(context, fmt::format("{} varied; of the runs {} search, {} draw the curves, {} prove; then "
+                                      "new searches against either controller take {} each",
                                       Counted(repair.varied.size(), "parameter"),
                                       FormatCount(static_cast<std::uint64_t>(repair.runs)),
-                                      FormatCount(repair.RunsOfCurves()), FormatCount(repair.RunsOfProof())));
+                                      FormatCount(repair.RunsOfCurves()), FormatCount(repair.RunsOfProof()),
+                                      FormatCount(fresh)));
     return plan;
   }
   TRY(const FailureTally empty, FirstEmptyRuns(plan.experiment, /*all=*/false));
@@ -161,18 +171,29 @@ Result<SearchPlan> PlanRepair(CommandContext& context, const RepairOptions& opti
   return plan;
 }
 
+// What one takes home of a repair: the experiment, the corpus, and the controllers of an ARGoS file.
+Status TakeHome(const RepairOptions& options, const Repair& repair, const std::string& dir) {
+  TRY(WriteRepairedCorpus(repair, dir, dir + "/corpus"));
+  const std::string toml = RepairedToml(repair, dir);
+  const Experiment repaired = RepairedExperiment(repair);
+  TRY(const std::string controllers,
+      ControllersWithParameters(SpecOf(repaired, EmptyArena(repaired.arena), repaired.seed), options.argos));
+  for (const auto& [file, text] :
+       {std::pair("repaired.toml", toml), std::pair("controllers.xml", controllers)}) {
+    const std::string kept = fmt::format("{}/{}", dir, file);
+    std::error_code none;
+    const bool asked_for =
+        file == std::string_view("controllers.xml") && !options.argos.controller_file.empty();
+    if (text.empty() || (!asked_for && std::filesystem::exists(kept, none))) continue;
+    TRY(WriteFileAtomically(kept, text, kReadableByAll));
+  }
+  return options.output.empty() ? Status(Ok{}) : WriteOutputFile(options.output, toml);
+}
+
 Result<ExitCode> Tell(CommandContext& context, const RepairOptions& options, const std::string& dir) {
   TRY(const Repair repair, ReadRepair(dir));
   if (repair.finished) {
-    const std::string toml = RepairedToml(repair, dir);
-    const std::string kept = dir + "/repaired.toml";
-    std::error_code none;
-    if (!std::filesystem::exists(kept, none)) {
-      TRY(WriteFileAtomically(kept, toml, kReadableByAll));
-    }
-    if (!options.output.empty()) {
-      TRY(WriteOutputFile(options.output, toml));
-    }
+    TRY(TakeHome(options, repair, dir));
   } else if (!options.output.empty()) {
     PrintMessage(context, options.output + " was not written: the repair has not come to its end");
   }
@@ -185,16 +206,43 @@ Result<ExitCode> Tell(CommandContext& context, const RepairOptions& options, con
   return repair.finished && !IsMended(repair) ? kExitNegative : kExitDone;
 }
 
+// The searches that begin anew against what came of it, unless they have come to their end; then tells all.
+Result<ExitCode> ProveAndTell(CommandContext& context, const RepairOptions& options, const std::string& dir) {
+  TRY(const Repair repair, ReadRepair(dir));
+  const int runs = repair.experiment.repair.fresh;
+  if (!repair.finished || runs == 0 || !repair.fresh.empty()) return Tell(context, options, dir);
+  const std::vector<SearchPlan> searches = ProofSearches(repair, runs);
+  CampaignRun campaign;
+  campaign.directory = ProofOf(dir);
+  campaign.announcement = fmt::format("{} begin anew against the original and the repaired controller, in {}",
+                                      Counted(searches.size(), "search"), campaign.directory);
+  campaign.serving = options.running;
+  TRY(campaign.session.workers, ParseWorkers(options.running.workers));
+  const bool begun = CampaignDirectory::IsCampaign(campaign.directory);
+  campaign.run = [&](const SessionOptions& session) {
+    return begun ? context.campaigns.Resume(campaign.directory, session)
+                 : context.campaigns.Start(campaign.directory, searches, session);
+  };
+  ExitCode told = kExitDone;
+  campaign.report = [&](const SessionReport& report) -> Status {
+    if (report.end == CampaignEnd::kStopped) return Ok{};
+    TRY(told, Tell(context, options, dir));
+    return Ok{};
+  };
+  TRY(const ExitCode code, RunCampaign(context, campaign));
+  return code == kExitDone ? told : code;
+}
+
 Result<ExitCode> RunRepair(CommandContext& context, const RepairOptions& options) {
   const std::string& first = options.experiment.experiment;
   if (CampaignDirectory::IsCampaign(first)) {
     if (!options.AsksNothing())
       return InvalidInput(first + " is a campaign: what it repairs is decided, it is told again alone");
-    return Tell(context, options, first);
+    return ProveAndTell(context, options, first);
   }
   TRY(const SearchPlan plan, PlanRepair(context, options));
   return RunAndTell(context, {plan}, options,
-                    [&](const std::string& directory) { return Tell(context, options, directory); });
+                    [&](const std::string& directory) { return ProveAndTell(context, options, directory); });
 }
 
 }  // namespace
@@ -218,6 +266,15 @@ void AddRepair(CommandParser& parser) {
   AddValue(command, "--budget", "RUNS", options.budget,
            "runs of the search (default: 5000); explanation and proof come on top, --dry-run tells them");
   AddValue(command, "--random", "N", options.random, "random cases that judge (default: 3000)");
+  AddValue(
+      command, "--controller-file", "FILE", options.argos.controller_file,
+      "write <controllers> of this .argos or XML file with the repaired parameters to DIR/controllers.xml "
+      "(of an adopted project they are its own file's)");
+  AddValue(command, "--controller", "ID", options.argos.controller,
+           "repair the <params> of the controller of this id in that file");
+  AddValue(
+      command, "--fresh", "RUNS", options.fresh,
+      "runs of each new search against the original and the repaired controller (default: 1000; 0: none)");
   AddValue(command, "-o,--output", "FILE", options.output,
            "write the experiment with the repaired parameters (it is DIR/repaired.toml, too)");
   command.footer(

@@ -113,6 +113,7 @@ struct RepairSpec {
   int training = 0;   // cases
   int guards = 0;     // cases
   std::string units;  // of held-out cases: how many belong together, in their order, blanks in between
+  int fresh = 1000;   // runs of each search that begins anew against the repaired controller; 0 = none
   std::string search = "genetic";  // of the repaired experiment, in place of the repair
 };
 

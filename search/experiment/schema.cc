@@ -193,6 +193,8 @@ std::vector<Key> RepairKeys(const Catalogue& catalogue) {
       NumberKey<kRepair, &RepairSpec::training>("repair.training", "", 0, 1e6, "cases that train"),
       NumberKey<kRepair, &RepairSpec::guards>("repair.guards", "", 0, 1e6, "random cases that guard them"),
       FieldKey<kRepair, &RepairSpec::units>("repair.units", "how many held-out cases belong together"),
+      NumberKey<kRepair, &RepairSpec::fresh>("repair.fresh", "", 0, 1e6,
+                                             "runs of each search against the repaired controller"),
       FieldKey<kRepair, &RepairSpec::search>("repair.search", "search.algorithm of the repaired experiment"),
   };
   keys.back().type = KeyType::kChoice;

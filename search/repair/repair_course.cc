@@ -32,6 +32,11 @@ double Mean(double sum, int count) {
   return count == 0 ? 0.0 : sum / count;
 }
 
+double MeanFitness(const RepairTally& tally) {
+  return Mean(std::accumulate(tally.fitness.begin(), tally.fitness.end(), 0.0),
+              static_cast<int>(tally.fitness.size()));
+}
+
 // The first `count` of them in an order that `seed` decides.
 std::vector<std::size_t> Shuffled(std::size_t first, std::size_t count, std::uint64_t seed,
                                   std::uint32_t turn) {
@@ -105,7 +110,7 @@ void RepairTally::Add(const RepairTally& other) {
   without_result += other.without_result;
   timeouts += other.timeouts;
   counted += other.counted;
-  fitness += other.fitness;
+  fitness.insert(fitness.end(), other.fitness.begin(), other.fitness.end());
   effects.contacts += other.effects.contacts;
   effects.seconds += other.effects.seconds;
   effects.distance += other.effects.distance;
@@ -148,7 +153,7 @@ void RepairCourse::Tell(const SettingsRun& run, const RunOutcome& outcome) {
     one.failures = one.without_result = 1;
   } else {
     one.failures = Fails(outcome, failing_) ? 1 : 0;
-    one.fitness = outcome.fitness;
+    one.fitness = {outcome.fitness};
     one.timeouts = plan_.time_limit > 0.0 && outcome.effects.seconds >= plan_.time_limit ? 1 : 0;
     one.counted = outcome.effects.contacts >= 0.0 ? 1 : 0;
     one.effects = outcome.effects;
@@ -195,7 +200,7 @@ bool RepairCourse::Better(std::size_t one, std::size_t other, std::span<const st
   if (score != against) return score < against;
   const RepairTally a = Sum(one, cases);
   const RepairTally b = Sum(other, cases);
-  return Mean(a.fitness, a.runs - a.without_result) > Mean(b.fitness, b.runs - b.without_result);
+  return MeanFitness(a) > MeanFitness(b);
 }
 
 std::uint64_t RepairCourse::RunsOfGeneration() const {

@@ -58,10 +58,10 @@ struct RepairTally {
   int runs = 0;
   int failures = 0;  // without a result among them
   int without_result = 0;
-  int timeouts = 0;      // simulated to the time limit
-  int counted = 0;       // whose contacts were counted
-  double fitness = 0.0;  // sums from here on, over runs with a result
-  SideEffects effects = {.contacts = 0.0};
+  int timeouts = 0;                         // simulated to the time limit
+  int counted = 0;                          // whose contacts were counted
+  std::vector<double> fitness;              // of the runs with a result
+  SideEffects effects = {.contacts = 0.0};  // sums over them
 
   void Add(const RepairTally& other);
   double Share() const { return runs == 0 ? 0.0 : static_cast<double>(failures) / runs; }

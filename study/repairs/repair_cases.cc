@@ -119,7 +119,11 @@ Result<std::vector<CaseUnit>> UnitsOfCampaigns(const std::vector<std::string>& d
       const std::uint64_t hash = CaseHash(one.test_case);
       if (!known.insert(hash).second) continue;
       one.test_case.name = directories.size() == 1 ? one.name : fmt::format("{} of {}", one.name, dir);
-      (lineages ? by_lineage[lineage[hash]] : searches[one.search]).push_back(std::move(one.test_case));
+      if (!RowOf(campaign.plans[one.search].experiment).Related()) {
+        by_search.push_back({std::move(one.test_case)});
+      } else {
+        (lineages ? by_lineage[lineage[hash]] : searches[one.search]).push_back(std::move(one.test_case));
+      }
     }
     for (CaseUnit& one : searches) {
       if (!one.empty()) by_search.push_back(std::move(one));

@@ -9,7 +9,8 @@
 
 namespace gauntlet {
 
-// Failing cases that say one thing: those of one search, or of one lineage where there is a single search.
+// Failing cases that say one thing: those of one search, or of one lineage where there is a single search; of
+// random search each on its own.
 using CaseUnit = std::vector<sim::TestCase>;
 
 // Of a corpus, each of whose cases is a unit: those that are expected to fail.

@@ -9,6 +9,7 @@
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/paired_tests.h"
 #include "analysis/statistics/proportions.h"
+#include "analysis/statistics/rank_test.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "master/campaign/stored_campaign.h"
@@ -44,6 +45,11 @@ double ShareIn(const Repair& repair, std::size_t setting, Range range) {
   return repair.course().TallyOf(setting, range.first, range.count).Share();
 }
 
+// Vargha and Delaney's.
+double FitnessA(const std::vector<double>& before, const std::vector<double>& after) {
+  return before.empty() || after.empty() ? 0.5 : analysis::MannWhitney(after, before).a;
+}
+
 // Intervals are over `units`, how many of the cases belong together each; over cases where these are too few.
 std::optional<RepairChange> ChangeIn(const Repair& repair, Range range, std::vector<std::size_t> units = {}) {
   const auto repaired = repair.course().repaired();
@@ -69,6 +75,8 @@ std::optional<RepairChange> ChangeIn(const Repair& repair, Range range, std::vec
   change.after = ShareIn(repair, *repaired, range);
   change.before_interval = analysis::MeanShareInterval(before, runs, analysis::kConfidence);
   change.after_interval = analysis::MeanShareInterval(after, runs, analysis::kConfidence);
+  change.a = FitnessA(repair.course().TallyOf(RepairCourse::kOriginal, range.first, range.count).fitness,
+                      repair.course().TallyOf(*repaired, range.first, range.count).fitness);
   change.less = change.before - change.after;
   change.less_interval = analysis::MeanShareDifferenceInterval(less, analysis::kConfidence);
   return change;
@@ -115,7 +123,7 @@ std::vector<std::size_t> NeverMended(const Repair& repair) {
 std::string NamesOf(const Repair& repair, const std::vector<std::size_t>& cases) {
   std::vector<std::string> names;
   for (const std::size_t one : cases) {
-    if (names.size() < kMostNamedCases) names.push_back(repair.names[one]);
+    if (names.size() < kMostNamedCases) names.push_back(repair.cases[one].name);
   }
   const std::string rest =
       cases.size() > kMostNamedCases ? fmt::format(" and {} more", cases.size() - kMostNamedCases) : "";
@@ -151,7 +159,9 @@ Table ChangeTable(const Repair& repair) {
                {">after", "after"},
                {"95 %", "after_interval"},
                {">fewer by", "fewer"},
-               {"95 %", "fewer_interval"}});
+               {"95 %", "fewer_interval"},
+               {">A", "a"}});
+  const auto a = [](double value) { return Cell(fmt::format("{:.2f}", value), value); };
   const auto add = [&](const char* what, const std::optional<RepairChange>& change) {
     if (!change) return;
     const auto interval = [](const analysis::Interval& one) {
@@ -159,11 +169,22 @@ Table ChangeTable(const Repair& repair) {
     };
     table.AddRow({what, change->cases, ShareCell(change->before), interval(change->before_interval),
                   ShareCell(change->after), interval(change->after_interval), ShareCell(change->less),
-                  interval(change->less_interval)});
+                  interval(change->less_interval), a(change->a)});
   };
   add("held out", ChangeInHeldOut(repair));
   add("random", ChangeInRandom(repair));
   add("training", ChangeInTraining(repair));
+  for (const FreshSearch& fresh : repair.fresh) {
+    const auto share = [](const FreshSearch::Found& found) {
+      return static_cast<double>(found.failures) /
+             static_cast<double>(std::max<std::uint64_t>(found.runs, 1));
+    };
+    const double before = share(fresh.before);
+    const double after = share(fresh.after);
+    table.AddRow({"anew, " + fresh.title, fresh.after.runs, ShareCell(before), Cell(), ShareCell(after),
+                  Cell(), ShareCell(before - after), Cell(),
+                  a(FitnessA(fresh.before.fitness, fresh.after.fitness))});
+  }
   return table;
 }
 
@@ -231,6 +252,22 @@ std::string FaultText(const Repair& repair) {
       second);
 }
 
+// What the searches that began anew have found.
+std::vector<std::string> FreshSentences(const Repair& repair) {
+  std::vector<std::string> sentences;
+  for (const FreshSearch& fresh : repair.fresh) {
+    if (fresh.archive)
+      sentences.push_back(fmt::format("The archive search fills {} of its cells, {} against the original.",
+                                      fresh.after.cells, fresh.before.cells));
+  }
+  if (!repair.fresh.empty())
+    sentences.push_back(
+        "Anew: one search against either, whose number is that of its runs; as these depend on each other, "
+        "there "
+        "is no interval.");
+  return sentences;
+}
+
 std::vector<std::string> Warnings(const Repair& repair) {
   std::vector<std::string> warnings;
   const auto held_out = ChangeInHeldOut(repair);
@@ -256,7 +293,8 @@ Result<Repair> ReadRepair(const std::string& dir) {
   if (search->Repair() == nullptr) return InvalidInput(dir + " holds no repair: gauntlet repair makes one");
   Repair repair{.experiment = plan.experiment, .search = search};
   repair.finished = search->Progress().finished && search->Repair()->repaired().has_value();
-  for (const Individual& one : search->Population()) repair.names.push_back(one.test_case.name);
+  TRY(repair.fresh, ReadFreshSearches(dir));
+  for (const Individual& one : search->Population()) repair.cases.push_back(one.test_case);
   return repair;
 }
 
@@ -350,14 +388,18 @@ std::string OutcomeOf(const Repair& repair) {
       ShareText(change->less), IntervalText(change->less_interval));
 }
 
-std::string RepairedToml(const Repair& repair, const std::string& dir) {
+Experiment RepairedExperiment(const Repair& repair) {
   Experiment repaired = WithValues(repair.experiment, repair.plan().varied,
                                    repair.course().ValuesOf(*repair.course().repaired()));
   repaired.search.algorithm = repaired.repair.search;
   repaired.repair = {};
   repaired.name += "-repaired";
+  return repaired;
+}
+
+std::string RepairedToml(const Repair& repair, const std::string& dir) {
   return WriteExperiment(
-      repaired,
+      RepairedExperiment(repair),
       {fmt::format("{}, repaired by gauntlet repair in the campaign {}.", repair.experiment.name, dir),
        OutcomeOf(repair)},
       BuiltInCatalogue());
@@ -379,6 +421,7 @@ std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, co
   }
   proof.table = ChangeTable(repair);
   proof.sentences = {OutcomeOf(repair), FaultText(repair)};
+  std::ranges::move(FreshSentences(repair), std::back_inserter(proof.sentences));
   std::ranges::move(Warnings(repair), std::back_inserter(proof.sentences));
   const std::vector<std::size_t> never = NeverMended(repair);
   if (!never.empty())
@@ -394,8 +437,14 @@ std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, co
       "one. Both are judged in the held-out cases."};
   Section effects{.title = "Side effects"};
   effects.table = EffectsTable(repair);
-  effects.commands = {{fmt::format("{} evolve {}/repaired.toml", program, place),
-                       "search for what still breaks the repaired controller"}};
+  effects.commands = {{fmt::format("{} check {}/corpus", program, place),
+                       "do the cases still break the repaired controller, with fresh seeds?"}};
+  if (repair.fresh.empty() && repair.experiment.repair.fresh > 0) {
+    effects.commands.push_back({fmt::format("{} repair {}", program, place), "search anew against it"});
+  } else {
+    effects.commands.push_back({fmt::format("{} evolve {}/repaired.toml", program, place),
+                                "search longer for what still breaks the repaired controller"});
+  }
   return {std::move(proof), std::move(keys), std::move(effects)};
 }
 
@@ -409,11 +458,14 @@ std::string RepairJson(const Repair& repair, const std::string& dir) {
   json["outcome"] = OutcomeOf(repair);
   json["fault"] = FaultText(repair);
   json["warnings"] = Warnings(repair);
+  for (const FreshSearch& fresh : repair.fresh) {
+    if (fresh.archive) json["cells"] = {{"before", fresh.before.cells}, {"after", fresh.after.cells}};
+  }
   json["changes"] = ChangeTable(repair).ToJson();
   json["parameters"] = KeysTable(repair).ToJson();
   json["side_effects"] = EffectsTable(repair).ToJson();
   Json never = Json::array();
-  for (const std::size_t one : NeverMended(repair)) never.push_back(repair.names[one]);
+  for (const std::size_t one : NeverMended(repair)) never.push_back(repair.cases[one].name);
   json["never_mended"] = std::move(never);
   return JsonText(json);
 }

@@ -12,6 +12,7 @@
 #include "analysis/tables/section.h"
 #include "base/result.h"
 #include "search/repair/repair_course.h"
+#include "study/repairs/repair_proof.h"
 
 namespace gauntlet {
 
@@ -22,6 +23,7 @@ struct RepairChange {
   double after = 0.0;
   analysis::Interval before_interval;
   analysis::Interval after_interval;
+  double a = 0.5;     // chance that a run has a higher fitness after than before, ties counting half
   double less = 0.0;  // before - after
   analysis::Interval less_interval;
 };
@@ -42,7 +44,8 @@ struct Repair {
   Experiment experiment;
   std::shared_ptr<const SearchAlgorithm> search;  // that holds the course
   bool finished = false;
-  std::vector<std::string> names;  // of the cases
+  std::vector<sim::TestCase> cases;
+  std::vector<FreshSearch> fresh = {};
 
   const RepairCourse& course() const { return *search->Repair(); }
   const RepairPlan& plan() const { return course().plan(); }
@@ -69,7 +72,8 @@ Table RepairCurveTable(const Repair& repair, std::size_t key);
 std::string OutcomeOf(const Repair& repair);
 // Whether failures became rarer by at least .05, beyond chance, in ten held-out cases or more.
 bool IsMended(const Repair& repair);
-// The experiment with the repaired parameters, as a file.
+// The experiment with the repaired parameters, and as a file.
+Experiment RepairedExperiment(const Repair& repair);
 std::string RepairedToml(const Repair& repair, const std::string& dir);
 
 std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, const std::string& program);

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      "random:30", "--budget", "400"}},
                     SettingsCommand{"repair",
                                     {"--from", "FAILING", "--parameters", "turning_speed_factor,turn_rate",
-                                     "--budget", "150", "--random", "20"}}),
+                                     "--budget", "150", "--random", "20", "--fresh", "40"}}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

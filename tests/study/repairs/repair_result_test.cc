@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sim/random/random_stream.h"
 #include "tests/study/repairs/repaired_swarm.h"
 
 namespace gauntlet {
@@ -53,6 +54,14 @@ TEST(RepairResult, SaysWhereNoParameterMendsAnything) {
               StartsWith("Not mended by its parameters: held-out failures are fewer by 0.0 %"));
   EXPECT_THAT(SentencesOf(repair), Contains("No parameter alone mends a held-out case."));
   EXPECT_THAT(SentencesOf(repair), Contains(HasSubstr("which need other rules: case 25, case 26, case 27")));
+}
+
+TEST(RepairResult, ChanceMendsNothing) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    sim::RandomStream random(seed, sim::StreamPurpose::kVariation);
+    const Repair repair = RepairedSwarm([&](double, double, std::size_t) { return random.Chance(0.8); });
+    EXPECT_FALSE(IsMended(repair)) << "seed " << seed << ": " << OutcomeOf(repair);
+  }
 }
 
 TEST(RepairResult, WarnsOfWhatTrainingAloneHasGained) {

@@ -50,7 +50,7 @@ inline Repair RepairedSwarm(const FailsWith& fails) {
     }
   }
   Repair repair{.experiment = experiment, .search = search, .finished = search->Progress().finished};
-  for (const sim::TestCase& one : cases) repair.names.push_back(one.name);
+  repair.cases = cases;
   return repair;
 }
 
