@@ -26,6 +26,7 @@ namespace {
 
 std::string ResumeHint(const CommandContext& context, const CampaignRun& campaign) {
   if (campaign.same_command_resumes) return "the same command";
+  if (!campaign.goes_on_by.empty()) return fmt::format("{} {}", context.program, campaign.goes_on_by);
   const std::string& directory = campaign.resumed_by.empty() ? campaign.directory : campaign.resumed_by;
   return fmt::format("{} resume {}", context.program, PastedPath(directory));
 }

@@ -13,6 +13,7 @@ namespace gauntlet {
 struct CampaignRun {
   std::string directory;
   std::string resumed_by = "";        // the directory that `resume` takes, when it is not `directory`
+  std::string goes_on_by = "";        // the command that goes on, with its arguments, when it is not `resume`
   bool same_command_resumes = false;  // it answers a question, which `resume` knows nothing of
   std::string announcement;           // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;

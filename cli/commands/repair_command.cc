@@ -10,6 +10,7 @@
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/parse_number.h"
+#include "base/shell_quoted.h"
 #include "base/split.h"
 #include "base/system/atomic_file.h"
 #include "cli/argos_files.h"
@@ -110,6 +111,8 @@ Result<std::string> VariedOf(const RepairOptions& options, const Experiment& exp
       if (!key.key.path.starts_with(kParameters))
         return InvalidInput(
             fmt::format("--vary {}: a repair changes the controller: {}NAME", key.ToText(), kParameters));
+      if (frozen.contains(key.key.path))
+        return InvalidInput(fmt::format("--vary {}: --freeze says that it may not change", key.ToText()));
       given.insert(key.key.path);
     }
   }
@@ -124,21 +127,40 @@ Result<std::string> VariedOf(const RepairOptions& options, const Experiment& exp
           fmt::format("--parameters {}: the range of {} is a point", options.parameters, key.path));
     }
   }
-  if (texts.empty()) return InvalidInput("no parameter is left that may change");
+  if (texts.empty())
+    return InvalidInput(fmt::format("--freeze {}: no parameter is left that may change", options.freeze));
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
+// What would be noticed only when all is simulated.
+Status CheckTakenHome(const RepairOptions& options, const Experiment& experiment) {
+  if (!options.output.empty()) {
+    TRY(const OutputFile writable, OutputFile::Open(options.output));
+  }
+  TRY(const std::string controllers,
+      ControllersWithParameters(SpecOf(experiment, EmptyArena(experiment.arena), 0), options.argos));
+  return Ok{};
+}
+
 Result<SearchPlan> PlanRepair(CommandContext& context, const RepairOptions& options) {
-  if (options.corpus.empty() == options.from.empty())
-    return InvalidInput(
-        "which cases are to be mended? --corpus FOLDER, or --from DIR of campaigns that found some");
   std::vector<ExtraSet> extra = {{"repair", "search.replicates", "1"}};
   if (!options.budget.empty()) extra.push_back({"--budget", "repair.runs", options.budget});
   if (!options.fresh.empty()) extra.push_back({"--fresh", "repair.fresh", options.fresh});
   TRY(Experiment experiment, LoadExperimentWith(options.experiment, extra));
+  if (options.corpus.empty() && options.from.empty())
+    return InvalidInput(
+        "which cases are to be mended? --corpus FOLDER, or --from DIR of campaigns that found some");
+  if (!options.corpus.empty() && !options.from.empty())
+    return InvalidInput("--corpus and --from both say which cases are to be mended: give one of them");
+  const int fresh = experiment.repair.fresh;
+  if (fresh > 0 && fresh < experiment.search.population)
+    return InvalidInput(
+        fmt::format("--fresh {}: a genetic search needs {} runs or more, one generation; 0: none", fresh,
+                    experiment.search.population));
   experiment.repair.search = experiment.search.algorithm;
   experiment.search.algorithm = "repair";
   TRY(experiment.repair.vary, VariedOf(options, experiment));
+  TRY(CheckTakenHome(options, experiment));
   const std::string random_text = options.random.empty() ? kRandom : options.random;
   const auto random = ParseNumber<std::size_t>(random_text);
   if (!random || *random > 1'000'000)
@@ -153,13 +175,15 @@ Result<SearchPlan> PlanRepair(CommandContext& context, const RepairOptions& opti
   TRY(const auto search, MakeSearch(plan.experiment, plan.cases));
   const RepairPlan& repair = search->Repair()->plan();
   if (options.dry_run) {
-    const auto fresh = static_cast<std::uint64_t>(plan.experiment.repair.fresh);
-    PrintMessage(context, fmt::format("{} varied; of the runs {} search, {} draw the curves, {} prove; then "
-                                      "new searches against either controller take {} each",
-                                      Counted(repair.varied.size(), "parameter"),
-                                      FormatCount(static_cast<std::uint64_t>(repair.runs)),
-                                      FormatCount(repair.RunsOfCurves()), FormatCount(repair.RunsOfProof()),
-                                      FormatCount(fresh)));
+    std::string cost = fmt::format("{} varied; of the runs at most {} search, {} draw the curves, {} prove",
+                                   Counted(repair.varied.size(), "parameter"),
+                                   FormatCount(static_cast<std::uint64_t>(repair.runs)),
+                                   FormatCount(repair.RunsOfCurves()), FormatCount(repair.RunsOfProof()));
+    if (fresh > 0)
+      cost += fmt::format(
+          "; two new searches against the original and two against the repaired controller add {} each",
+          FormatCount(static_cast<std::uint64_t>(fresh)));
+    PrintMessage(context, cost);
     return plan;
   }
   TRY(const FailureTally empty, FirstEmptyRuns(plan.experiment, /*all=*/false));
@@ -211,11 +235,14 @@ Result<ExitCode> ProveAndTell(CommandContext& context, const RepairOptions& opti
   TRY(const Repair repair, ReadRepair(dir));
   const int runs = repair.experiment.repair.fresh;
   if (!repair.finished || runs == 0 || !repair.fresh.empty()) return Tell(context, options, dir);
+  TRY(TakeHome(options, repair, dir));
   const std::vector<SearchPlan> searches = ProofSearches(repair, runs);
   CampaignRun campaign;
   campaign.directory = ProofOf(dir);
-  campaign.announcement = fmt::format("{} begin anew against the original and the repaired controller, in {}",
-                                      Counted(searches.size(), "search"), campaign.directory);
+  campaign.announcement =
+      fmt::format("{} searches begin anew against the original and the repaired controller, in {}",
+                  searches.size(), campaign.directory);
+  campaign.goes_on_by = fmt::format("repair {}", PastedPath(dir));
   campaign.serving = options.running;
   TRY(campaign.session.workers, ParseWorkers(options.running.workers));
   const bool begun = CampaignDirectory::IsCampaign(campaign.directory);

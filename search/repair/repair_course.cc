@@ -25,7 +25,6 @@ constexpr std::size_t kFewestCases = 6;    // of a candidate
 constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
 constexpr std::size_t kFinalists = 8;      // of which the repaired settings are chosen
 constexpr std::uint64_t kChoiceOf = 6;     // a part of the budget is kept for it
-constexpr double kMoreContacts = 1.1;      // times the original's
 constexpr double kMoreTimeouts = 0.01;     // beside the original's share
 
 double Mean(double sum, int count) {
@@ -337,8 +336,10 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
 
 std::vector<SettingsRun> RepairCourse::BeginProof() {
   stage_ = Stage::kProof;
-  repaired_ = *std::ranges::min_element(chosen_from_,
-                                        [&](std::size_t a, std::size_t b) { return Better(a, b, cases_); });
+  repaired_ = kOriginal;  // unless one is better
+  for (const std::size_t one : chosen_from_) {
+    if (Better(one, *repaired_, cases_)) repaired_ = one;
+  }
   std::vector<std::size_t> in_all = {kOriginal};
   if (*repaired_ != kOriginal) in_all.push_back(*repaired_);
   std::vector<std::size_t> in_held_out = in_all;
@@ -382,6 +383,7 @@ std::vector<SettingsRun> RepairCourse::Next() {
       return runs;
     }
     case Stage::kBaseline:
+      if (TallyOf(kOriginal, 0, plan_.cases.training).failures == 0) return BeginProof();
       stage_ = Stage::kSearch;
       BeginGeneration();
       return NextBlock();

@@ -82,7 +82,8 @@ class RepairCourse final : public SettingsCourse {
   bool WantsMetrics() const override { return true; }
 
   const RepairPlan& plan() const { return plan_; }
-  static constexpr std::size_t kOriginal = 0;  // the first setting
+  static constexpr std::size_t kOriginal = 0;   // the first setting
+  static constexpr double kMoreContacts = 1.1;  // times the original's
   std::size_t generations() const { return generations_; }
   std::uint64_t searched() const { return searched_; }  // runs of the search
   // Settings; nothing before they are known.

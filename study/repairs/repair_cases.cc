@@ -106,9 +106,14 @@ Result<std::vector<CaseUnit>> UnitsOfCampaigns(const std::vector<std::string>& d
   std::map<IndividualId, CaseUnit> by_lineage;
   std::set<std::uint64_t> known;
   for (const std::string& dir : directories) {
-    TRY(QuestionedCampaign failing, FailingCases(dir));
-    TRY(CheckScenario(failing.plans.front().experiment.scenario, dir, experiment));
     TRY(const StoredCampaign campaign, OpenStoredCampaign(dir));
+    TRY(CheckScenario(campaign.plans.front().experiment.scenario, dir, experiment));
+    if (RowOf(campaign.plans.front().experiment).varies_settings)
+      return InvalidInput(
+          fmt::format("{}: its runs are of many settings ({}); name the campaigns that its "
+                      "cases come from",
+                      dir, RowOf(campaign.plans.front().experiment).title));
+    TRY(QuestionedCampaign failing, FailingCases(dir));
     std::vector<CaseUnit> searches(failing.plans.size());
     const bool lineages = directories.size() == 1 && campaign.plans.size() == 1;
     std::map<std::uint64_t, IndividualId> lineage;
@@ -132,6 +137,23 @@ Result<std::vector<CaseUnit>> UnitsOfCampaigns(const std::vector<std::string>& d
   for (auto& [founder, unit] : by_lineage) by_search.push_back(std::move(unit));
   return by_search;
 }
+
+namespace {
+
+// The cases of `units` out of `judging`; how many these were.
+std::size_t TakeOut(const std::vector<CaseUnit>& units, std::vector<CaseUnit>& judging) {
+  std::set<std::uint64_t> training;
+  for (const CaseUnit& unit : units) {
+    for (const sim::TestCase& one : unit) training.insert(CaseHash(one));
+  }
+  std::size_t taken = 0;
+  for (CaseUnit& unit : judging)
+    taken += std::erase_if(unit, [&](const sim::TestCase& one) { return training.contains(CaseHash(one)); });
+  std::erase_if(judging, [](const CaseUnit& one) { return one.empty(); });
+  return taken;
+}
+
+}  // namespace
 
 Result<ChosenRepairCases> ChooseRepairCases(const RepairCaseChoice& choice, Experiment& experiment) {
   std::vector<CaseUnit> units;
@@ -157,6 +179,11 @@ Result<ChosenRepairCases> ChooseRepairCases(const RepairCaseChoice& choice, Expe
     return InvalidInput(
         (choice.corpus.empty() ? fmt::format("{}", fmt::join(choice.from, ",")) : choice.corpus) +
         " holds no case that fails: there is nothing to repair");
+  if (const std::size_t twice = TakeOut(units, judging); twice > 0)
+    chosen.notes.push_back(Counted(twice, "held-out case") + " left out, as they train");
+  if (!choice.held_out.empty() && judging.empty())
+    return InvalidInput(fmt::format("--held-out {}: no failing case that does not train is left to judge",
+                                    fmt::join(choice.held_out, ",")));
   if (choice.held_out.empty()) {
     std::tie(units, judging) = Halves(Spread(std::move(units), kMostFailing, experiment.seed));
   } else {
@@ -164,8 +191,8 @@ Result<ChosenRepairCases> ChooseRepairCases(const RepairCaseChoice& choice, Expe
     judging = Spread(std::move(judging), kMostFailing / 2, experiment.seed);
   }
   if (CasesIn(judging) < kFewestCases) {
-    chosen.notes.push_back(
-        fmt::format("{} held out: they judge nothing", Counted(CasesIn(judging), "failing case")));
+    chosen.notes.push_back(fmt::format("{} held out: fewer than {} judge nothing",
+                                       Counted(CasesIn(judging), "failing case"), kFewestCases));
   } else if (judging.size() < kFewestUnits) {
     chosen.notes.push_back(fmt::format(
         "the {} that judge come from {} (searches, or lineages of one): what holds of them may not hold "

@@ -28,6 +28,7 @@ constexpr std::size_t kFewestJudges = 10;  // held-out cases, below which nothin
 constexpr double kNoEffect = 0.03;         // a change of failure probability that is told as none
 constexpr double kMatters = 0.1;           // one that is told as an effect of the parameter alone
 constexpr double kAtBound = 0.02;          // of the range
+constexpr double kLowerFitness = 0.44;  // A, from where on the effect is told (1 - kVarghaDelaney2000.small)
 constexpr std::size_t kMostNamedCases = 8;
 constexpr std::size_t kFewestUnitsOfIntervals = 10;
 
@@ -210,16 +211,20 @@ Table KeysTable(const Repair& repair) {
   return table;
 }
 
+// In all cases that judge.
+RepairTally JudgedTally(const Repair& repair, std::size_t setting) {
+  const RepairCases& cases = repair.plan().cases;
+  return repair.course().TallyOf(setting, cases.first_held_out(), cases.held_out() + cases.random);
+}
+
+double ContactsIn(const RepairTally& tally) {
+  return tally.counted == 0 ? 0.0 : tally.effects.contacts / tally.counted;
+}
+
 Table EffectsTable(const Repair& repair) {
   Table table({{"in each run", "effect"}, {">before", "before"}, {">after", "after"}});
-  const RepairCases& cases = repair.plan().cases;
-  const auto tally = [&](std::size_t setting) {
-    RepairTally all = repair.course().TallyOf(setting, cases.first_held_out(), cases.held_out());
-    all.Add(repair.course().TallyOf(setting, cases.first_random(), cases.random));
-    return all;
-  };
-  const RepairTally before = tally(RepairCourse::kOriginal);
-  const RepairTally after = tally(*repair.course().repaired());
+  const RepairTally before = JudgedTally(repair, RepairCourse::kOriginal);
+  const RepairTally after = JudgedTally(repair, *repair.course().repaired());
   const auto add = [&](const char* what, auto value) {
     const auto mean = [&](const RepairTally& one) {
       const double number = value(one) / std::max(one.runs - one.without_result, 1);
@@ -256,7 +261,7 @@ std::string FaultText(const Repair& repair) {
 std::vector<std::string> FreshSentences(const Repair& repair) {
   std::vector<std::string> sentences;
   for (const FreshSearch& fresh : repair.fresh) {
-    if (fresh.archive)
+    if (fresh.archive && fresh.before.cells + fresh.after.cells > 0)
       sentences.push_back(fmt::format("The archive search fills {} of its cells, {} against the original.",
                                       fresh.after.cells, fresh.before.cells));
   }
@@ -272,13 +277,25 @@ std::vector<std::string> Warnings(const Repair& repair) {
   std::vector<std::string> warnings;
   const auto held_out = ChangeInHeldOut(repair);
   const auto training = ChangeInTraining(repair);
-  if (held_out && training && held_out->less < training->less / 2.0)
+  const bool judged = held_out && training && held_out->cases >= kFewestJudges;
+  if (judged && held_out->less < training->less / 2.0)
     warnings.push_back(
         fmt::format("Overfitted: failures are fewer by {} in training cases and by {} in held-out ones.",
                     ShareText(training->less), ShareText(held_out->less)));
   if (const auto random = ChangeInRandom(repair); random && random->less_interval.high < 0.0)
     warnings.push_back(
         fmt::format("In random cases it fails more often than before, by {}.", ShareText(-random->less)));
+  if (const auto random = ChangeInRandom(repair); random && random->a < kLowerFitness)
+    warnings.push_back(
+        fmt::format("In random cases it fails less and yet does less: of two runs, one before and one after, "
+                    "the later has "
+                    "the lower fitness in {}.",
+                    ShareText(1.0 - random->a)));
+  const double before = ContactsIn(JudgedTally(repair, RepairCourse::kOriginal));
+  const double after = ContactsIn(JudgedTally(repair, *repair.course().repaired()));
+  if (after > RepairCourse::kMoreContacts * before)
+    warnings.push_back(
+        fmt::format("Its robots touch more often: {:.3g} times in each run, {:.3g} before.", after, before));
   return warnings;
 }
 
@@ -373,19 +390,21 @@ std::string OutcomeOf(const Repair& repair) {
   if (!repair.finished) return "The repair has not come to its end.";
   const auto change = ChangeInHeldOut(repair);
   if (!change) return "No held-out case judges whether it is mended.";
+  const std::string by =
+      fmt::format("held-out failures are {} by {} ({}, 95 %)", change->less < 0.0 ? "more" : "fewer",
+                  ShareText(std::abs(change->less)), IntervalText(change->less_interval));
+  if (const auto training = ChangeInTraining(repair); training && training->before == 0.0)
+    return "Nothing to repair: the controller does not fail in the training cases.";
+  if (change->cases < kFewestJudges)
+    return fmt::format("Not shown either way: {}, and {} are too few to judge by; {} are needed.", by,
+                       Counted(change->cases, "case"), kFewestJudges);
   if (IsMended(repair))
     return fmt::format(
         "Mended: of held-out runs {} fail with the repaired parameters, {} with the original ones.",
         ShareText(change->after), ShareText(change->before));
   if (change->less >= kLeastGain)
-    return fmt::format(
-        "Not shown to be mended: held-out failures are fewer by {} ({}, 95 %), which with {} may be chance.",
-        ShareText(change->less), IntervalText(change->less_interval), Counted(change->cases, "case"));
-  return fmt::format(
-      "Not mended by its parameters: held-out failures are fewer by {} ({}, 95 %), which is less than 5 %. "
-      "Its rules "
-      "have to change.",
-      ShareText(change->less), IntervalText(change->less_interval));
+    return fmt::format("Not shown to be mended: {}, which may be chance.", by);
+  return fmt::format("Not mended by its parameters: {}, which is less than 5 %. Its rules have to change.", by);
 }
 
 Experiment RepairedExperiment(const Repair& repair) {
@@ -437,8 +456,8 @@ std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, co
       "one. Both are judged in the held-out cases."};
   Section effects{.title = "Side effects"};
   effects.table = EffectsTable(repair);
-  effects.commands = {{fmt::format("{} check {}/corpus", program, place),
-                       "do the cases still break the repaired controller, with fresh seeds?"}};
+  effects.commands = {{fmt::format("{} check {}/corpus --update", program, place),
+                       "what its cases are expected to do comes from three runs: look again with fresh seeds"}};
   if (repair.fresh.empty() && repair.experiment.repair.fresh > 0) {
     effects.commands.push_back({fmt::format("{} repair {}", program, place), "search anew against it"});
   } else {

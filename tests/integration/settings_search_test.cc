@@ -60,6 +60,8 @@ TEST_P(SettingsSearchTest, IsAlikeForAnyNumberOfWorkersAndAfterAKill) {
   const nlohmann::json one = Told("one");
   EXPECT_TRUE(one["finished"].get<bool>());
   EXPECT_EQ(Told("three"), one);
+  EXPECT_EQ(Gauntlet({"repair", "flocking", "--from", scratch_ / "one"}).exit_code, 2)
+      << "its runs are of many settings";
   EXPECT_EQ(Told("killed"), one);
   EXPECT_EQ(StateHash(scratch_ / "killed"), StateHash(scratch_ / "one"));
 }

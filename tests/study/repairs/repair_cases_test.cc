@@ -68,7 +68,7 @@ TEST_F(RepairCasesTest, TakesAtMostEightyAndTheSameForTheSameSeed) {
 TEST_F(RepairCasesTest, SaysWhereTheHeldOutCasesAreTooFew) {
   WriteCorpus(8);
   EXPECT_THAT(ChooseRepairCases({.corpus = scratch_.path()}, experiment_)->notes,
-              ElementsAre("4 failing cases held out: they judge nothing"));
+              ElementsAre("4 failing cases held out: fewer than 10 judge nothing"));
 }
 
 TEST_F(RepairCasesTest, SaysWhatIsWrong) {

@@ -56,6 +56,22 @@ TEST(RepairResult, SaysWhereNoParameterMendsAnything) {
   EXPECT_THAT(SentencesOf(repair), Contains(HasSubstr("which need other rules: case 25, case 26, case 27")));
 }
 
+TEST(RepairResult, WhatDoesNotFailIsNotRepaired) {
+  const Repair repair = RepairedSwarm([](double, double, std::size_t) { return false; });
+  ASSERT_TRUE(repair.finished);
+  EXPECT_FALSE(IsMended(repair));
+  EXPECT_EQ(OutcomeOf(repair), "Nothing to repair: the controller does not fail in the training cases.");
+  EXPECT_EQ(repair.course().generations(), 0U);
+}
+
+TEST(RepairResult, NothingWorseThanTheOriginalIsRecommended) {
+  const Repair repair = RepairedSwarm([](double factor, double rate, std::size_t of_case) {
+    return of_case == 0 || factor != 0.5 || rate < 0.78 || rate > 0.79;
+  });
+  ASSERT_TRUE(repair.finished);
+  EXPECT_EQ(repair.course().repaired(), RepairCourse::kOriginal);
+}
+
 TEST(RepairResult, ChanceMendsNothing) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     sim::RandomStream random(seed, sim::StreamPurpose::kVariation);
@@ -71,6 +87,18 @@ TEST(RepairResult, WarnsOfWhatTrainingAloneHasGained) {
   EXPECT_THAT(
       SentencesOf(repair),
       Contains("Overfitted: failures are fewer by 100.0 % in training cases and by 0.0 % in held-out ones."));
+}
+
+TEST(RepairResult, WarnsWhereItFailsLessByDoingLess) {
+  const auto guarded = [](std::size_t of_case) { return of_case >= testing_support::kTrainingCases; };
+  const Repair repair = RepairedSwarm(testing_support::FactorIsAtFault,
+                                      [&](double factor, double, std::size_t of_case) -> RunOutcome {
+                                        const bool faster = factor > 0.6 && guarded(of_case);
+                                        RunOutcome run{.fitness = faster ? 0.5 : 1.0};
+                                        run.effects = {.contacts = faster ? 2.1 : 2.0};
+                                        return run;
+                                      });
+  EXPECT_THAT(SentencesOf(repair), Contains(StartsWith("In random cases it fails less and yet does less")));
 }
 
 TEST(RepairResult, AParameterThatHelpsAloneMayBeMadeUpForByOthers) {

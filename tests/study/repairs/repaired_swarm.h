@@ -21,7 +21,16 @@ inline constexpr std::size_t kRandomCases = 20;
 // Whether a run of the case fails with these values of turning_speed_factor and turn_rate.
 using FailsWith = std::function<bool(double factor, double rate, std::size_t of_case)>;
 
-inline Repair RepairedSwarm(const FailsWith& fails) {
+// What a run comes to that does not fail.
+using PassesWith = std::function<RunOutcome(double factor, double rate, std::size_t of_case)>;
+
+inline RunOutcome AsBefore(double /*factor*/, double /*rate*/, std::size_t /*of_case*/) {
+  RunOutcome run{.fitness = 1.0};
+  run.effects = {.contacts = 2.0, .seconds = 100.0, .distance = 30.0};
+  return run;
+}
+
+inline Repair RepairedSwarm(const FailsWith& fails, const PassesWith& passes = AsBefore) {
   Experiment experiment = ParseExperiment("", "toy.toml", {"scenario=flocking"}, BuiltInCatalogue()).value();
   experiment.name = "toy";
   experiment.search.algorithm = "repair";
@@ -43,9 +52,11 @@ inline Repair RepairedSwarm(const FailsWith& fails) {
       std::size_t of_case = 0;
       while (CaseHash(cases[of_case]) != CaseHash(request.test_case)) ++of_case;
       const sim::Parameters& values = request.settings->controller_parameters;
-      const bool failed = fails(values.at("turning_speed_factor"), values.at("turn_rate"), of_case);
-      RunOutcome run{.fitness = failed ? 0.0 : 1.0, .total_failure = failed};
-      run.effects = {.contacts = 2.0, .seconds = 100.0, .distance = 30.0};
+      const double factor = values.at("turning_speed_factor");
+      const double rate = values.at("turn_rate");
+      RunOutcome run = passes(factor, rate, of_case);
+      run.total_failure = fails(factor, rate, of_case);
+      if (run.total_failure) run.fitness = 0.0;
       search->Tell(OutcomeOfRuns(request.individual, request.evaluation, {run}));
     }
   }
