@@ -402,9 +402,9 @@ std::string OutcomeOf(const Repair& repair) {
     return fmt::format(
         "Mended: of held-out runs {} fail with the repaired parameters, {} with the original ones.",
         ShareText(change->after), ShareText(change->before));
-  if (change->less >= kLeastGain)
-    return fmt::format("Not shown to be mended: {}, which may be chance.", by);
-  return fmt::format("Not mended by its parameters: {}, which is less than 5 %. Its rules have to change.", by);
+  if (change->less >= kLeastGain) return fmt::format("Not shown to be mended: {}, which may be chance.", by);
+  return fmt::format("Not mended by its parameters: {}, which is less than 5 %. Its rules have to change.",
+                     by);
 }
 
 Experiment RepairedExperiment(const Repair& repair) {
@@ -456,8 +456,9 @@ std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, co
       "one. Both are judged in the held-out cases."};
   Section effects{.title = "Side effects"};
   effects.table = EffectsTable(repair);
-  effects.commands = {{fmt::format("{} check {}/corpus --update", program, place),
-                       "what its cases are expected to do comes from three runs: look again with fresh seeds"}};
+  effects.commands = {
+      {fmt::format("{} check {}/corpus --update", program, place),
+       "what its cases are expected to do comes from three runs: look again with fresh seeds"}};
   if (repair.fresh.empty() && repair.experiment.repair.fresh > 0) {
     effects.commands.push_back({fmt::format("{} repair {}", program, place), "search anew against it"});
   } else {
