@@ -1,4 +1,8 @@
 // gauntlet show: what came out of a campaign.
+#include <malloc.h>
+
+#include <limits>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -18,6 +22,15 @@ struct ShowOptions {
   bool types = false;
 };
 
+// What is freed on the way stays with the process, which ends soon, and need not be asked of the system
+// again: a fifth of the time that 100,000 cases take.
+void KeepFreedMemory() {
+  constexpr int kAtATime = 32 << 20;  // bytes
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  mallopt(M_TOP_PAD, kAtATime);
+}
+
 // The summary's JSON, continued by all runs, of one and the same moment.
 Result<ExitCode> ShowWithRuns(CommandContext& context, const ShowOptions& options) {
   TRY(const StoredCampaign campaign, OpenStoredCampaign(options.directory));
@@ -34,6 +47,7 @@ Result<ExitCode> ShowWithRuns(CommandContext& context, const ShowOptions& option
 }
 
 Result<ExitCode> RunShow(CommandContext& context, const ShowOptions& options) {
+  KeepFreedMemory();
   if (IsStudy(options.directory)) {
     return InvalidInput(
         fmt::format("{0} holds a study: its campaigns are {0}/searches and "
