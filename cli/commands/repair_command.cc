@@ -78,14 +78,21 @@ Result<std::set<std::string>> NamedParameters(const char* option, const std::str
 }
 
 // What a parameter's row allows, as --vary takes it; "" where that is a point. On the logarithmic scale, and
-// not beyond a hundredth and a hundred times the value, where it spans thousandfold.
+// not beyond a hundredth and a hundred times the value, where it spans thousandfold. Where it has no range,
+// from a tenth to ten times the value.
 std::string RangeOf(const Key& key, const Experiment& experiment) {
   constexpr double kWide = 1000.0;
   constexpr double kFar = 100.0;
+  constexpr double kUnbounded = 1e9;  // what a number of an .argos file, which has no range, is given
+  constexpr double kNear = 10.0;
   if (key.type == KeyType::kFlag) return key.path + "=false|true";
   const double value = NumberOf(key.get(experiment));
   double low = key.min;
   double high = key.max;
+  if ((low <= -kUnbounded || high >= kUnbounded) && value > 0.0) {
+    low = value / kNear;
+    high = value * kNear;
+  }
   const bool log = low > 0.0 && high / low >= kWide;
   if (log) {
     low = std::max(low, value / kFar);
