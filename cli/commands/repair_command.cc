@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -89,10 +90,8 @@ std::string RangeOf(const Key& key, const Experiment& experiment) {
   const double value = NumberOf(key.get(experiment));
   double low = key.min;
   double high = key.max;
-  if ((low <= -kUnbounded || high >= kUnbounded) && value > 0.0) {
-    low = value / kNear;
-    high = value * kNear;
-  }
+  if (low <= -kUnbounded || high >= kUnbounded)
+    std::tie(low, high) = std::minmax({value / kNear, value * kNear});  // a point where it is 0
   const bool log = low > 0.0 && high / low >= kWide;
   if (log) {
     low = std::max(low, value / kFar);
