@@ -18,10 +18,13 @@
 namespace gauntlet {
 namespace {
 
-constexpr double kFirstStep = 0.3;         // of a range
-constexpr std::size_t kGenerations = 16;   // that a budget is spent on, if it can be
-constexpr std::size_t kGuardsOf = 3;       // one of so many cases of a candidate is a guard
-constexpr std::size_t kFewestCases = 6;    // of a candidate
+constexpr double kFirstStep = 0.15;       // of a range
+constexpr double kClearly = 0.1;          // fewer failures of a value alone, for the search to begin at it
+constexpr std::size_t kGenerations = 16;  // that a large budget is spent on
+constexpr std::size_t kFewestGenerations = 4;  // that a small one is, before candidates get fewer cases
+constexpr std::size_t kEnoughCases = 15;       // of a candidate, where a budget is small
+constexpr std::size_t kFewestCases = 6;        // of a candidate
+constexpr std::size_t kGuardsOf = 3;           // one of so many cases of a candidate is a guard
 constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
 constexpr std::size_t kFinalists = 8;      // of which the repaired settings are chosen
 constexpr std::uint64_t kChoiceOf = 6;     // a part of the budget is kept for it
@@ -118,18 +121,17 @@ void RepairTally::Add(const RepairTally& other) {
 RepairCourse::RepairCourse(RepairPlan plan, std::string_view failing)
     : plan_(std::move(plan)),
       failing_(failing),
-      cma_(
-          [&] {
-            SettingsPoint start;
-            for (std::size_t i = 0; i < plan_.varied.size(); ++i)
-              start.push_back(plan_.varied[i].PlaceOf(plan_.original[i]));
-            return start;
-          }(),
-          kFirstStep, plan_.seed),
+      cma_(PlaceOf(plan_.original), kFirstStep, plan_.seed),
       curves_(plan_.varied.size()),
       alone_(plan_.varied.size()),
       all_but_(plan_.varied.size()) {
   AddSetting(plan_.original);
+}
+
+SettingsPoint RepairCourse::PlaceOf(const std::vector<KeyValue>& values) const {
+  SettingsPoint place;
+  for (std::size_t i = 0; i < values.size(); ++i) place.push_back(plan_.varied[i].PlaceOf(values[i]));
+  return place;
 }
 
 std::size_t RepairCourse::AddSetting(std::vector<KeyValue> values) {
@@ -205,8 +207,10 @@ bool RepairCourse::Better(std::size_t one, std::size_t other, std::span<const st
 std::uint64_t RepairCourse::RunsOfGeneration() const {
   const std::size_t all = plan_.cases.training + plan_.cases.guards;
   const std::size_t left = static_cast<std::size_t>(plan_.runs) - all;
-  const std::size_t each = left / ((kGenerations + 1) * cma_.population());
-  return cma_.population() * std::min(all, std::max(kFewestCases, each));
+  const auto each = [&](std::size_t generations) { return left / ((generations + 1) * cma_.population()); };
+  const std::size_t cases =
+      std::max({kFewestCases, std::min(kEnoughCases, each(kFewestGenerations)), each(kGenerations)});
+  return cma_.population() * std::min(all, cases);
 }
 
 void RepairCourse::BeginGeneration() {
@@ -272,27 +276,18 @@ void RepairCourse::EndGeneration() {
 std::vector<SettingsRun> RepairCourse::BeginChoice() {
   stage_ = Stage::kChoice;
   const std::vector<std::size_t> best_of_generations = std::exchange(chosen_from_, {AddRounded(cma_.mean())});
-  const std::vector<std::size_t> cases = CurveCases();
-  for (std::size_t key = 0; key < plan_.varied.size(); ++key) {
-    std::size_t best_alone = kOriginal;
-    for (const std::size_t one : curves_[key]) {
-      if (Sum(one, cases).Share() < Sum(best_alone, cases).Share()) best_alone = one;
-    }
-    if (best_alone != kOriginal) alone_[key] = best_alone;
-  }
-  // One of them may do as well as all together.
+  const auto consider = [&](std::size_t setting) {
+    if (chosen_from_.size() < kFinalists && std::ranges::count(chosen_from_, setting) == 0)
+      chosen_from_.push_back(setting);
+  };
+  consider(start_);
+  // One value alone may do as well as all together.
   const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
-    return one ? Sum(*one, cases).Share() : 1.0;
+    return one ? Sum(*one, CurveCases()).Share() : 1.0;
   });
-  if (*alone) chosen_from_.push_back(**alone);
-  for (auto best = best_of_generations.rbegin();
-       best != best_of_generations.rend() && chosen_from_.size() < kFinalists; ++best) {
-    SettingsPoint place;
-    for (std::size_t i = 0; i < plan_.varied.size(); ++i)
-      place.push_back(plan_.varied[i].PlaceOf(settings_[*best][i]));
-    const std::size_t rounded = AddRounded(place);
-    if (std::ranges::count(chosen_from_, rounded) == 0) chosen_from_.push_back(rounded);
-  }
+  if (*alone) consider(**alone);
+  for (auto best = best_of_generations.rbegin(); best != best_of_generations.rend(); ++best)
+    consider(AddRounded(PlaceOf(settings_[*best])));
   const std::size_t all = plan_.cases.training + plan_.cases.guards;
   const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
   const std::size_t each = std::min(all, std::max(kFewestCases, left / chosen_from_.size()));
@@ -332,6 +327,34 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
     }
   }
   return runs;
+}
+
+// At each key's value that fails clearly less alone, its neighbours counted half: all of them together.
+void RepairCourse::BeginSearch() {
+  stage_ = Stage::kSearch;
+  const std::vector<std::size_t> cases = CurveCases();
+  std::vector<KeyValue> start = plan_.original;
+  for (std::size_t key = 0; key < curves_.size(); ++key) {
+    const std::vector<std::size_t>& curve = curves_[key];
+    std::size_t best_alone = kOriginal;
+    double least = Sum(kOriginal, cases).Share() - kClearly;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      if (Sum(curve[i], cases).Share() < Sum(best_alone, cases).Share()) best_alone = curve[i];
+      double weight = 0.0;
+      double sum = 0.0;
+      for (std::size_t j = i == 0 ? 0 : i - 1; j < std::min(i + 2, curve.size()); ++j) {
+        weight += j == i ? 1.0 : 0.5;
+        sum += (j == i ? 1.0 : 0.5) * Sum(curve[j], cases).Share();
+      }
+      if (sum / weight >= least) continue;
+      least = sum / weight;
+      start[key] = settings_[curve[i]][key];
+    }
+    if (best_alone != kOriginal) alone_[key] = best_alone;
+  }
+  start_ = AddSetting(start);
+  cma_ = CmaEs(PlaceOf(start), kFirstStep, plan_.seed);
+  BeginGeneration();
 }
 
 std::vector<SettingsRun> RepairCourse::BeginProof() {
@@ -384,8 +407,9 @@ std::vector<SettingsRun> RepairCourse::Next() {
     }
     case Stage::kBaseline:
       if (TallyOf(kOriginal, 0, plan_.cases.training).failures == 0) return BeginProof();
-      stage_ = Stage::kSearch;
-      BeginGeneration();
+      return BeginCurves();
+    case Stage::kCurves:
+      BeginSearch();
       return NextBlock();
     case Stage::kSearch: {
       DropHopeless();
@@ -393,12 +417,10 @@ std::vector<SettingsRun> RepairCourse::Next() {
       EndGeneration();
       const std::uint64_t choice = static_cast<std::uint64_t>(plan_.runs) / kChoiceOf;
       if (searched_ + RunsOfGeneration() + choice > static_cast<std::uint64_t>(plan_.runs))
-        return BeginCurves();
+        return BeginChoice();
       BeginGeneration();
       return NextBlock();
     }
-    case Stage::kCurves:
-      return BeginChoice();
     case Stage::kChoice:
       return BeginProof();
     case Stage::kProof:

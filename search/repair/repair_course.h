@@ -1,7 +1,7 @@
 // The course of a repair, pure: which settings of a controller are simulated in which cases, given what came
-// of earlier ones. First CMA-ES looks for the settings that fail least in the training cases and, as their
-// guard, in random ones; then each key is varied alone; at last the chosen settings are judged in cases that
-// took no part.
+// of earlier ones. First each key is varied alone; then CMA-ES, from what does best there, looks for the
+// settings that fail least in the training cases and, as their guard, in random ones; at last the chosen
+// settings are judged in cases that took no part.
 #pragma once
 
 #include <cstddef>
@@ -101,8 +101,9 @@ class RepairCourse final : public SettingsCourse {
   std::vector<std::size_t> CurveCases() const;
 
  private:
-  enum class Stage { kStart, kBaseline, kSearch, kChoice, kCurves, kProof };
+  enum class Stage { kStart, kBaseline, kCurves, kSearch, kChoice, kProof };
 
+  SettingsPoint PlaceOf(const std::vector<KeyValue>& values) const;
   std::size_t AddSetting(std::vector<KeyValue> values);
   std::size_t AddRounded(const SettingsPoint& place);
   RepairTally Sum(std::size_t setting, std::span<const std::size_t> cases) const;
@@ -115,13 +116,15 @@ class RepairCourse final : public SettingsCourse {
   void DropHopeless();
   void EndGeneration();
   std::uint64_t RunsOfGeneration() const;
-  std::vector<SettingsRun> BeginChoice();
   std::vector<SettingsRun> BeginCurves();
+  void BeginSearch();
+  std::vector<SettingsRun> BeginChoice();
   std::vector<SettingsRun> BeginProof();
 
   const RepairPlan plan_;
   const std::string_view failing_;
   CmaEs cma_;
+  std::size_t start_ = kOriginal;  // its first mean
   Stage stage_ = Stage::kStart;
   std::size_t stages_ = 0;
   std::size_t generations_ = 0;
