@@ -270,24 +270,23 @@ void RepairCourse::EndGeneration() {
     return Better(candidates_[a], candidates_[b], cases_);
   });
   cma_.Tell(order);
-  chosen_from_.push_back(candidates_[order.front()]);
+  means_.push_back(cma_.mean());
 }
 
 std::vector<SettingsRun> RepairCourse::BeginChoice() {
   stage_ = Stage::kChoice;
-  const std::vector<std::size_t> best_of_generations = std::exchange(chosen_from_, {AddRounded(cma_.mean())});
   const auto consider = [&](std::size_t setting) {
     if (chosen_from_.size() < kFinalists && std::ranges::count(chosen_from_, setting) == 0)
       chosen_from_.push_back(setting);
   };
+  consider(AddRounded(means_.back()));
   consider(start_);
   // One value alone may do as well as all together.
   const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
     return one ? Sum(*one, CurveCases()).Share() : 1.0;
   });
   if (*alone) consider(**alone);
-  for (auto best = best_of_generations.rbegin(); best != best_of_generations.rend(); ++best)
-    consider(AddRounded(PlaceOf(settings_[*best])));
+  for (auto mean = means_.rbegin(); mean != means_.rend(); ++mean) consider(AddRounded(*mean));
   const std::size_t all = plan_.cases.training + plan_.cases.guards;
   const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
   const std::size_t each = std::min(all, std::max(kFewestCases, left / chosen_from_.size()));

@@ -135,7 +135,8 @@ class RepairCourse final : public SettingsCourse {
   std::vector<std::size_t> candidates_;
   std::vector<std::size_t> racing_;
   std::vector<std::size_t> cases_;
-  std::size_t simulated_ = 0;  // of these cases, by those in the race
+  std::size_t simulated_ = 0;         // of these cases, by those in the race
+  std::vector<SettingsPoint> means_;  // after each generation; steadier than its best candidate
   std::vector<std::size_t> chosen_from_;
   std::optional<std::size_t> repaired_;
   std::vector<std::vector<std::size_t>> curves_;

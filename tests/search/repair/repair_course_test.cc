@@ -96,6 +96,16 @@ TEST(RepairCourse, FindsTheParameterThatIsAtFaultAndProvesIt) {
   EXPECT_EQ(course.CurveOf(0).size(), 9U);
 }
 
+TEST(RepairCourse, BeginsItsSearchAtWhatEachParameterDoesBestAlone) {
+  RepairCourse course = CourseOf(Broken(150));
+  Drive(course, [](const std::vector<double>& values, std::size_t of_case) {
+    return FailsIf(of_case % 2 == 0 ? values[0] < 0.9 : values[1] < 1.7);
+  });
+  const std::vector<double> repaired = ValuesIn(course, *course.repaired());
+  EXPECT_GE(repaired[0], 0.9);
+  EXPECT_GE(repaired[1], 1.7);
+}
+
 TEST(RepairCourse, HeldOutCasesTakeNoPart) {
   RepairCourse one = CourseOf(Broken());
   RepairCourse other = CourseOf(Broken());
