@@ -316,9 +316,10 @@ more in random ones (CMA-ES over their ranges; all settings are simulated with c
 failing cases, and fresh random ones, take no part and judge. Contacts of the robots may grow by a tenth, and runs to
 the time limit by a hundredth.
 
-Then it explains: each parameter alone at nine values, and the repaired parameters without each. Exit 1 when held-out
-failures are fewer by less than 5 % (its parameters do not mend the controller, its rules have to change), and where
-it is not shown that they are fewer: within chance, or in less than ten held-out cases. In place of EXPERIMENT may stand the directory of such a campaign, to tell it again.
+It explains by each parameter alone at nine values, where the search begins, and by the repaired parameters without
+each. Exit 1 when held-out failures are fewer by less than 5 % (its parameters do not mend the controller, its rules
+have to change), and where it is not shown that they are fewer: within chance, or in less than ten held-out cases. In
+place of EXPERIMENT may stand the directory of such a campaign, to tell it again.
 
 Examples:
   gauntlet repair flocking --from campaigns/a,campaigns/b --dir campaigns/repair

@@ -355,7 +355,8 @@ std::vector<RepairedKey> KeysOf(const Repair& repair) {
       key.flags.push_back("at a bound of its range");
     if (!helps_alone && std::abs(key.failing_without - after) <= kNoEffect)
       key.flags.push_back("without effect");
-    if (helps_alone && !missed) key.flags.push_back("made up for by others");
+    if (helps_alone && !missed && repair.course().repaired() != RepairCourse::kOriginal)
+      key.flags.push_back("made up for by others");
   }
   return keys;
 }
@@ -395,6 +396,9 @@ std::string OutcomeOf(const Repair& repair) {
                   ShareText(std::abs(change->less)), IntervalText(change->less_interval));
   if (const auto training = ChangeInTraining(repair); training && training->before == 0.0)
     return "Nothing to repair: the controller does not fail in the training cases.";
+  if (repair.course().repaired() == RepairCourse::kOriginal)
+    return "Not mended: no settings that were tried fail less in the training cases without more contacts or "
+           "time-outs than allowed, so the original ones are kept.";
   if (change->cases < kFewestJudges)
     return fmt::format("Not shown either way: {}, and {} are too few to judge by; {} are needed.", by,
                        Counted(change->cases, "case"), kFewestJudges);
