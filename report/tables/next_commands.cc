@@ -51,12 +51,13 @@ std::vector<NextCommand> NextCommandsOf(const CampaignSummary& summary, const Ca
   };
   std::vector<NextCommand> commands;
   const SearchRow* row = FindSearch(summary.searches.front().search);
-  if (row != nullptr && row->varies_settings)
+  const bool varies_settings = row != nullptr && row->varies_settings;
+  if (varies_settings)
     commands.push_back({begin(std::string(row->command).c_str()), "what it has found"});
   const Confirmation* toughest = ToughestOf(answers.confirmations);
   if (const auto shown = ShowToughest(summary, begin); shown && toughest == nullptr)
     commands.push_back(*shown);
-  if (summary.failing_runs > 0 && answers.confirmations.empty())
+  if (!varies_settings && summary.failing_runs > 0 && answers.confirmations.empty())
     commands.push_back(
         {ConfirmCommand(summary, program, directory), "how many different failures are these?"});
   if (toughest != nullptr &&
