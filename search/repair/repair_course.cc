@@ -336,8 +336,8 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
   return runs;
 }
 
-// Where the search may begin: at each key's value that fails clearly less alone, its neighbours counted half,
-// all together; and, as these may not go together, at the one that fails least alone.
+// Where the search may begin: at the value that fails least alone, and at each key's value that fails clearly
+// less alone, its neighbours counted half, all together, as they may go or not.
 void RepairCourse::ReadCurves() {
   const std::vector<std::size_t> cases = CurveCases();
   std::vector<KeyValue> start = plan_.original;
@@ -359,11 +359,11 @@ void RepairCourse::ReadCurves() {
     }
     if (best_alone != kOriginal) alone_[key] = best_alone;
   }
-  Consider(AddSetting(start));
   const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
     return one ? Sum(*one, cases).Share() : 1.0;
   });
   if (*alone) Consider(**alone);
+  Consider(AddSetting(start));  // which must be better: a repair of one number is the simpler one
 }
 
 void RepairCourse::BeginSearch() {

@@ -396,12 +396,12 @@ std::string OutcomeOf(const Repair& repair) {
                   ShareText(std::abs(change->less)), IntervalText(change->less_interval));
   if (const auto training = ChangeInTraining(repair); training && training->before == 0.0)
     return "Nothing to repair: the controller does not fail in the training cases.";
-  if (repair.course().repaired() == RepairCourse::kOriginal)
-    return "Not mended: no settings that were tried fail less in the training cases without more contacts or "
-           "time-outs than allowed, so the original ones are kept.";
   if (change->cases < kFewestJudges)
     return fmt::format("Not shown either way: {}, and {} are too few to judge by; {} are needed.", by,
                        Counted(change->cases, "case"), kFewestJudges);
+  if (repair.course().repaired() == RepairCourse::kOriginal)
+    return "Not mended by its parameters: no settings that were tried fail less in the training cases, "
+           "without more contacts or time-outs than allowed. Its rules have to change.";
   if (IsMended(repair))
     return fmt::format(
         "Mended: of held-out runs {} fail with the repaired parameters, {} with the original ones.",
