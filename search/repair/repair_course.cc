@@ -26,8 +26,6 @@ constexpr std::size_t kEnoughCases = 15;       // of a candidate, where a budget
 constexpr std::size_t kFewestCases = 6;        // of a candidate
 constexpr std::size_t kGuardsOf = 3;           // one of so many cases of a candidate is a guard
 constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
-constexpr std::size_t kStarts = 2;         // where the search may begin, the original beside them
-constexpr std::size_t kStartsOf = 50;      // a part of the budget for each place where the search may begin
 constexpr std::size_t kFinalists = 8;      // of which the repaired settings are chosen
 constexpr std::uint64_t kChoiceOf = 6;     // a part of the budget is kept for it
 constexpr double kMoreTimeouts = 0.01;     // beside the original's share
@@ -99,7 +97,7 @@ Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const 
     plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
   const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
   const std::size_t least =
-      plan.cases.training + plan.cases.guards + (kStarts + candidates + kFinalists) * kFewestCases;
+      plan.cases.training + plan.cases.guards + (candidates + kFinalists) * kFewestCases;
   if (static_cast<std::size_t>(spec.runs) < least)
     return InvalidInput(
         fmt::format("--budget {}: at least {} runs are needed: the original controller in {} cases, "
@@ -277,29 +275,22 @@ void RepairCourse::EndGeneration() {
 
 std::vector<SettingsRun> RepairCourse::BeginChoice() {
   stage_ = Stage::kChoice;
-  Consider(start_);
-  for (auto mean = means_.rbegin(); mean != means_.rend(); ++mean) Consider(AddRounded(*mean));
-  const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
-  return Compare(left / std::max<std::size_t>(chosen_from_.size(), 1));
-}
-
-void RepairCourse::Consider(std::size_t setting) {
-  if (setting == kOriginal || chosen_from_.size() == kFinalists) return;
-  if (std::ranges::count(chosen_from_, setting) == 0) chosen_from_.push_back(setting);
-}
-
-std::size_t RepairCourse::BestConsidered() const {
-  std::size_t best = kOriginal;  // unless one is better
-  for (const std::size_t one : chosen_from_) {
-    if (Better(one, best, cases_)) best = one;
-  }
-  return best;
-}
-
-std::vector<SettingsRun> RepairCourse::Compare(std::size_t cases) {
+  const auto consider = [&](std::size_t setting) {
+    if (chosen_from_.size() < kFinalists && std::ranges::count(chosen_from_, setting) == 0)
+      chosen_from_.push_back(setting);
+  };
+  // One value alone may do as well as all together, and is the simpler repair.
+  const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
+    return one ? Sum(*one, CurveCases()).Share() : 1.0;
+  });
+  if (*alone) consider(**alone);
+  consider(start_);
+  for (auto mean = means_.rbegin(); mean != means_.rend(); ++mean) consider(AddRounded(*mean));
   const std::size_t all = plan_.cases.training + plan_.cases.guards;
+  const auto left = static_cast<std::size_t>(plan_.runs) - std::min<std::size_t>(searched_, plan_.runs);
+  const std::size_t each = std::min(all, std::max(kFewestCases, left / chosen_from_.size()));
   cases_ = Shuffled(0, all, plan_.seed, 0);
-  cases_.resize(std::clamp(cases, std::min(all, kFewestCases), all));
+  cases_.resize(each);
   std::vector<SettingsRun> runs;
   for (const std::size_t setting : chosen_from_) {
     for (const std::size_t one : cases_) runs.push_back({setting, one});
@@ -336,9 +327,9 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
   return runs;
 }
 
-// Where the search may begin: at the value that fails least alone, and at each key's value that fails clearly
-// less alone, its neighbours counted half, all together, as they may go or not.
-void RepairCourse::ReadCurves() {
+// At each key's value that fails clearly less alone, its neighbours counted half: all of them together.
+void RepairCourse::BeginSearch() {
+  stage_ = Stage::kSearch;
   const std::vector<std::size_t> cases = CurveCases();
   std::vector<KeyValue> start = plan_.original;
   for (std::size_t key = 0; key < curves_.size(); ++key) {
@@ -359,24 +350,17 @@ void RepairCourse::ReadCurves() {
     }
     if (best_alone != kOriginal) alone_[key] = best_alone;
   }
-  const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
-    return one ? Sum(*one, cases).Share() : 1.0;
-  });
-  if (*alone) Consider(**alone);
-  Consider(AddSetting(start));  // which must be better: a repair of one number is the simpler one
-}
-
-void RepairCourse::BeginSearch() {
-  stage_ = Stage::kSearch;
-  start_ = BestConsidered();
-  chosen_from_.clear();
-  cma_ = CmaEs(PlaceOf(settings_[start_]), kFirstStep, plan_.seed);
+  start_ = AddSetting(start);
+  cma_ = CmaEs(PlaceOf(start), kFirstStep, plan_.seed);
   BeginGeneration();
 }
 
 std::vector<SettingsRun> RepairCourse::BeginProof() {
   stage_ = Stage::kProof;
-  repaired_ = BestConsidered();
+  repaired_ = kOriginal;  // unless one is better
+  for (const std::size_t one : chosen_from_) {
+    if (Better(one, *repaired_, cases_)) repaired_ = one;
+  }
   std::vector<std::size_t> in_all = {kOriginal};
   if (*repaired_ != kOriginal) in_all.push_back(*repaired_);
   std::vector<std::size_t> in_held_out = in_all;
@@ -422,14 +406,7 @@ std::vector<SettingsRun> RepairCourse::Next() {
     case Stage::kBaseline:
       if (TallyOf(kOriginal, 0, plan_.cases.training).failures == 0) return BeginProof();
       return BeginCurves();
-    case Stage::kCurves: {
-      stage_ = Stage::kStarts;
-      ReadCurves();
-      std::vector<SettingsRun> runs = Compare(static_cast<std::size_t>(plan_.runs) / kStartsOf);
-      if (!runs.empty()) return runs;
-      [[fallthrough]];
-    }
-    case Stage::kStarts:
+    case Stage::kCurves:
       BeginSearch();
       return NextBlock();
     case Stage::kSearch: {
@@ -437,12 +414,10 @@ std::vector<SettingsRun> RepairCourse::Next() {
       if (simulated_ < cases_.size()) return NextBlock();
       EndGeneration();
       const std::uint64_t choice = static_cast<std::uint64_t>(plan_.runs) / kChoiceOf;
-      if (searched_ + RunsOfGeneration() + choice <= static_cast<std::uint64_t>(plan_.runs)) {
-        BeginGeneration();
-        return NextBlock();
-      }
-      std::vector<SettingsRun> runs = BeginChoice();
-      return runs.empty() ? BeginProof() : runs;
+      if (searched_ + RunsOfGeneration() + choice > static_cast<std::uint64_t>(plan_.runs))
+        return BeginChoice();
+      BeginGeneration();
+      return NextBlock();
     }
     case Stage::kChoice:
       return BeginProof();

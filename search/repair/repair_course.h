@@ -101,7 +101,7 @@ class RepairCourse final : public SettingsCourse {
   std::vector<std::size_t> CurveCases() const;
 
  private:
-  enum class Stage { kStart, kBaseline, kCurves, kStarts, kSearch, kChoice, kProof };
+  enum class Stage { kStart, kBaseline, kCurves, kSearch, kChoice, kProof };
 
   SettingsPoint PlaceOf(const std::vector<KeyValue>& values) const;
   std::size_t AddSetting(std::vector<KeyValue> values);
@@ -117,13 +117,7 @@ class RepairCourse final : public SettingsCourse {
   void EndGeneration();
   std::uint64_t RunsOfGeneration() const;
   std::vector<SettingsRun> BeginCurves();
-  void ReadCurves();
   void BeginSearch();
-  void Consider(std::size_t setting);
-  // The considered settings in so many training cases and guards, and the best of them and the original
-  // there.
-  std::vector<SettingsRun> Compare(std::size_t cases);
-  std::size_t BestConsidered() const;
   std::vector<SettingsRun> BeginChoice();
   std::vector<SettingsRun> BeginProof();
 

@@ -106,7 +106,7 @@ TEST(RepairCourse, BeginsItsSearchAtWhatEachParameterDoesBestAlone) {
   EXPECT_GE(repaired[1], 1.7);
 }
 
-TEST(RepairCourse, BeginsItsSearchAtOneParameterWhereSeveralDoNotGoTogether) {
+TEST(RepairCourse, RepairsByOneParameterWhereSeveralDoNotGoTogether) {
   RepairCourse course = CourseOf(Broken(150));
   Drive(course, [](const std::vector<double>& values, std::size_t of_case) {
     const bool random = of_case >= kTraining && of_case < 2 * kTraining;
@@ -181,7 +181,7 @@ TEST(RepairCourse, SaysWhatIsWrongWithAPlan) {
               HasSubstr("the controller has 0.5, which is not in this range"));
   EXPECT_EQ(
       PlanOf(Broken(50)).error().message,
-      "--budget 50: at least 142 runs are needed: the original controller in 40 cases, and one generation");
+      "--budget 50: at least 130 runs are needed: the original controller in 40 cases, and one generation");
   EXPECT_FALSE(PlanOf(Broken(), 30).ok());
 }
 
