@@ -280,8 +280,9 @@ std::vector<SettingsRun> RepairCourse::BeginChoice() {
       chosen_from_.push_back(setting);
   };
   // One value alone may do as well as all together, and is the simpler repair.
+  const std::vector<std::size_t> cases = CurveCases();
   const auto alone = std::ranges::min_element(alone_, {}, [&](const std::optional<std::size_t>& one) {
-    return one ? Sum(*one, CurveCases()).Share() : 1.0;
+    return one ? Sum(*one, cases).Share() : 1.0;
   });
   if (*alone) consider(**alone);
   consider(start_);
