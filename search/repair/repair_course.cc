@@ -25,10 +25,12 @@ constexpr std::size_t kFewestGenerations = 4;  // that a small one is, before ca
 constexpr std::size_t kEnoughCases = 15;       // of a candidate, where a budget is small
 constexpr std::size_t kFewestCases = 6;        // of a candidate
 constexpr std::size_t kGuardsOf = 3;           // one of so many cases of a candidate is a guard
-constexpr std::size_t kBlocksOfCases = 3;  // of a generation's cases, between which candidates are dropped
-constexpr std::size_t kFinalists = 8;      // of which the repaired settings are chosen
-constexpr std::uint64_t kChoiceOf = 6;     // a part of the budget is kept for it
-constexpr double kMoreTimeouts = 0.01;     // beside the original's share
+constexpr double kFewContacts = 15.0;          // cases, in which half of what is too much is chance
+constexpr std::size_t kBlocksOfCases = 3;   // of a generation's cases, between which candidates are dropped
+constexpr std::size_t kFinalists = 8;       // of which the repaired settings are chosen
+constexpr std::size_t kJoiningGuards = 10;  // in which it is seen whether values go together
+constexpr std::uint64_t kPartOf = 6;  // the budget: kept for the choice; spent at most on what goes together
+constexpr double kMoreTimeouts = 0.01;  // beside the original's share
 
 double Mean(double sum, int count) {
   return count == 0 ? 0.0 : sum / count;
@@ -96,13 +98,14 @@ Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const 
   if (const auto* scenario = controllers::FindScenario(experiment))
     plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
   const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
-  const std::size_t least =
-      plan.cases.training + plan.cases.guards + (candidates + kFinalists) * kFewestCases;
+  const std::size_t joining = std::min(plan.cases.guards, kJoiningGuards);
+  const std::size_t original = plan.cases.training + plan.cases.guards;
+  const std::size_t least = original + joining + (candidates + kFinalists) * kFewestCases;
   if (static_cast<std::size_t>(spec.runs) < least)
     return InvalidInput(
         fmt::format("--budget {}: at least {} runs are needed: the original controller in {} cases, "
-                    "and one generation",
-                    spec.runs, least, plan.cases.training + plan.cases.guards));
+                    "its best value alone in {}, and one generation",
+                    spec.runs, least, original, joining));
   return plan;
 }
 
@@ -189,8 +192,10 @@ double RepairCourse::ScoreOf(std::size_t setting, std::span<const std::size_t> c
   const RepairTally there = Sum(kOriginal, guards);
   double score = Sum(setting, cases).Share();
   const double most = kMoreContacts * Mean(there.effects.contacts, there.counted);
-  if (most > 0.0 && here.counted > 0)
-    score += std::max(0.0, Mean(here.effects.contacts, here.counted) / most - 1.0);
+  if (most > 0.0 && here.counted > 0) {
+    const double more = Mean(here.effects.contacts, here.counted) / most - 1.0;
+    score += std::max(0.0, more) * here.counted / (here.counted + kFewContacts);
+  }
   score += std::max(0.0, Mean(here.timeouts, here.runs) - Mean(there.timeouts, there.runs) - kMoreTimeouts);
   return score;
 }
@@ -328,15 +333,16 @@ std::vector<SettingsRun> RepairCourse::BeginCurves() {
   return runs;
 }
 
-// At each key's value that fails clearly less alone, its neighbours counted half: all of them together.
-void RepairCourse::BeginSearch() {
-  stage_ = Stage::kSearch;
+// Each key's value that fails clearly less alone, its neighbours counted half; the best one first.
+void RepairCourse::ReadCurves() {
   const std::vector<std::size_t> cases = CurveCases();
-  std::vector<KeyValue> start = plan_.original;
+  const double clearly = Sum(kOriginal, cases).Share() - kClearly;
+  std::vector<double> share(curves_.size());
   for (std::size_t key = 0; key < curves_.size(); ++key) {
     const std::vector<std::size_t>& curve = curves_[key];
     std::size_t best_alone = kOriginal;
-    double least = Sum(kOriginal, cases).Share() - kClearly;
+    std::optional<std::size_t> best;
+    share[key] = clearly;
     for (std::size_t i = 0; i < curve.size(); ++i) {
       if (Sum(curve[i], cases).Share() < Sum(best_alone, cases).Share()) best_alone = curve[i];
       double weight = 0.0;
@@ -345,15 +351,41 @@ void RepairCourse::BeginSearch() {
         weight += j == i ? 1.0 : 0.5;
         sum += (j == i ? 1.0 : 0.5) * Sum(curve[j], cases).Share();
       }
-      if (sum / weight >= least) continue;
-      least = sum / weight;
-      start[key] = settings_[curve[i]][key];
+      if (sum / weight >= share[key]) continue;
+      share[key] = sum / weight;
+      best = curve[i];
     }
     if (best_alone != kOriginal) alone_[key] = best_alone;
+    if (best) joining_.push_back({key, settings_[*best][key]});
   }
-  start_ = AddSetting(start);
-  cma_ = CmaEs(PlaceOf(start), kFirstStep, plan_.seed);
-  BeginGeneration();
+  std::ranges::stable_sort(joining_, {}, [&](const auto& one) { return share[one.first]; });
+}
+
+// One more of them joins where they begin, if they go together.
+std::vector<SettingsRun> RepairCourse::JoinNext() {
+  stage_ = Stage::kJoining;
+  std::vector<std::size_t> cases = CurveCases();
+  const std::vector<std::size_t> random = Shuffled(plan_.cases.training, plan_.cases.guards, plan_.seed, 0);
+  cases.insert(cases.end(), random.begin(),
+               random.begin() + static_cast<std::ptrdiff_t>(std::min(random.size(), kJoiningGuards)));
+  if (joined_ && ScoreOf(*joined_, cases) < ScoreOf(start_, cases)) start_ = *joined_;
+  const auto most = static_cast<std::uint64_t>(plan_.runs) / kPartOf + plan_.cases.first_held_out();
+  if (tried_ == joining_.size() || (joined_ && searched_ + cases.size() > most)) {
+    stage_ = Stage::kSearch;
+    cma_ = CmaEs(PlaceOf(settings_[start_]), kFirstStep, plan_.seed);
+    BeginGeneration();
+    return NextBlock();
+  }
+  const auto& [key, value] = joining_[tried_++];
+  std::vector<KeyValue> values = settings_[start_];
+  values[key] = value;
+  joined_ = AddSetting(std::move(values));
+  std::vector<SettingsRun> runs;
+  for (const std::size_t one : cases) {
+    if (TallyOf(*joined_, one).runs == 0) runs.push_back({*joined_, one});
+  }
+  searched_ += runs.size();
+  return runs.empty() ? JoinNext() : runs;
 }
 
 std::vector<SettingsRun> RepairCourse::BeginProof() {
@@ -408,13 +440,15 @@ std::vector<SettingsRun> RepairCourse::Next() {
       if (TallyOf(kOriginal, 0, plan_.cases.training).failures == 0) return BeginProof();
       return BeginCurves();
     case Stage::kCurves:
-      BeginSearch();
-      return NextBlock();
+      ReadCurves();
+      return JoinNext();
+    case Stage::kJoining:
+      return JoinNext();
     case Stage::kSearch: {
       DropHopeless();
       if (simulated_ < cases_.size()) return NextBlock();
       EndGeneration();
-      const std::uint64_t choice = static_cast<std::uint64_t>(plan_.runs) / kChoiceOf;
+      const std::uint64_t choice = static_cast<std::uint64_t>(plan_.runs) / kPartOf;
       if (searched_ + RunsOfGeneration() + choice > static_cast<std::uint64_t>(plan_.runs))
         return BeginChoice();
       BeginGeneration();

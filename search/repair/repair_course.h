@@ -1,7 +1,7 @@
 // The course of a repair, pure: which settings of a controller are simulated in which cases, given what came
-// of earlier ones. First each key is varied alone; then CMA-ES, from what does best there, looks for the
-// settings that fail least in the training cases and, as their guard, in random ones; at last the chosen
-// settings are judged in cases that took no part.
+// of earlier ones. First each key is varied alone; then the best values join as long as they do better
+// together; from there CMA-ES looks for the settings that fail least in the training cases and, as their
+// guard, in random ones; at last the chosen settings are judged in cases that took no part.
 #pragma once
 
 #include <cstddef>
@@ -101,7 +101,7 @@ class RepairCourse final : public SettingsCourse {
   std::vector<std::size_t> CurveCases() const;
 
  private:
-  enum class Stage { kStart, kBaseline, kCurves, kSearch, kChoice, kProof };
+  enum class Stage { kStart, kBaseline, kCurves, kJoining, kSearch, kChoice, kProof };
 
   SettingsPoint PlaceOf(const std::vector<KeyValue>& values) const;
   std::size_t AddSetting(std::vector<KeyValue> values);
@@ -117,7 +117,8 @@ class RepairCourse final : public SettingsCourse {
   void EndGeneration();
   std::uint64_t RunsOfGeneration() const;
   std::vector<SettingsRun> BeginCurves();
-  void BeginSearch();
+  void ReadCurves();
+  std::vector<SettingsRun> JoinNext();
   std::vector<SettingsRun> BeginChoice();
   std::vector<SettingsRun> BeginProof();
 
@@ -137,6 +138,9 @@ class RepairCourse final : public SettingsCourse {
   std::vector<std::size_t> cases_;
   std::size_t simulated_ = 0;         // of these cases, by those in the race
   std::vector<SettingsPoint> means_;  // after each generation; steadier than its best candidate
+  std::vector<std::pair<std::size_t, KeyValue>> joining_;  // keys and their values, the best alone first
+  std::size_t tried_ = 0;                                  // of them
+  std::optional<std::size_t> joined_;                      // the setting with the last one of these
   std::vector<std::size_t> chosen_from_;
   std::optional<std::size_t> repaired_;
   std::vector<std::vector<std::size_t>> curves_;

@@ -267,9 +267,8 @@ std::vector<std::string> FreshSentences(const Repair& repair) {
   }
   if (!repair.fresh.empty())
     sentences.push_back(
-        "Anew: one search against either, whose number is that of its runs; as these depend on each other, "
-        "there "
-        "is no interval.");
+        "Anew: one search against either, whose number is that of its runs; as these depend on each "
+        "other, there is no interval.");
   return sentences;
 }
 
@@ -287,9 +286,8 @@ std::vector<std::string> Warnings(const Repair& repair) {
         fmt::format("In random cases it fails more often than before, by {}.", ShareText(-random->less)));
   if (const auto random = ChangeInRandom(repair); random && random->a < kLowerFitness)
     warnings.push_back(
-        fmt::format("In random cases it fails less and yet does less: of two runs, one before and one after, "
-                    "the later has "
-                    "the lower fitness in {}.",
+        fmt::format("In random cases it fails less and yet does less: of two runs, one before and one "
+                    "after, the later has the lower fitness in {}.",
                     ShareText(1.0 - random->a)));
   const double before = ContactsIn(JudgedTally(repair, RepairCourse::kOriginal));
   const double after = ContactsIn(JudgedTally(repair, *repair.course().repaired()));
@@ -399,16 +397,21 @@ std::string OutcomeOf(const Repair& repair) {
   if (change->cases < kFewestJudges)
     return fmt::format("Not shown either way: {}, and {} are too few to judge by; {} are needed.", by,
                        Counted(change->cases, "case"), kFewestJudges);
-  if (repair.course().repaired() == RepairCourse::kOriginal)
-    return "Not mended by its parameters: no settings that were tried fail less in the training cases, "
-           "without more contacts or time-outs than allowed. Its rules have to change.";
   if (IsMended(repair))
     return fmt::format(
         "Mended: of held-out runs {} fail with the repaired parameters, {} with the original ones.",
         ShareText(change->after), ShareText(change->before));
   if (change->less >= kLeastGain) return fmt::format("Not shown to be mended: {}, which may be chance.", by);
-  return fmt::format("Not mended by its parameters: {}, which is less than 5 %. Its rules have to change.",
-                     by);
+  double alone = change->before;
+  for (const RepairedKey& key : KeysOf(repair)) alone = std::min(alone, key.failing_alone);
+  return fmt::format(
+      "Not mended by its parameters: {}. {}",
+      repair.course().repaired() == RepairCourse::kOriginal
+          ? "no settings that were tried fail less in the training cases, without more contacts "
+            "or time-outs than allowed"
+          : by + ", which is less than 5 %",
+      change->before - alone < kMatters ? "Its rules have to change."
+                                        : "One of them alone does better, which fresh cases have to judge.");
 }
 
 Experiment RepairedExperiment(const Repair& repair) {
@@ -455,9 +458,8 @@ std::vector<Section> TellRepair(const Repair& repair, const std::string& dir, co
   Section keys{.title = "The parameters"};
   keys.table = KeysTable(repair);
   keys.sentences = {
-      "Alone: the value of nine that failed least in training, all others original. Without: all repaired "
-      "but this "
-      "one. Both are judged in the held-out cases."};
+      "Alone: the value of nine that failed least in training, all others original. Without: all "
+      "repaired but this one. Both are judged in the held-out cases."};
   Section effects{.title = "Side effects"};
   effects.table = EffectsTable(repair);
   effects.commands = {

@@ -96,8 +96,8 @@ TEST(RepairCourse, FindsTheParameterThatIsAtFaultAndProvesIt) {
   EXPECT_EQ(course.CurveOf(0).size(), 9U);
 }
 
-TEST(RepairCourse, BeginsItsSearchAtWhatEachParameterDoesBestAlone) {
-  RepairCourse course = CourseOf(Broken(150));
+TEST(RepairCourse, BeginsItsSearchWhereParametersDoBestTogether) {
+  RepairCourse course = CourseOf(Broken(400));
   Drive(course, [](const std::vector<double>& values, std::size_t of_case) {
     return FailsIf(of_case % 2 == 0 ? values[0] < 0.9 : values[1] < 1.7);
   });
@@ -107,7 +107,7 @@ TEST(RepairCourse, BeginsItsSearchAtWhatEachParameterDoesBestAlone) {
 }
 
 TEST(RepairCourse, RepairsByOneParameterWhereSeveralDoNotGoTogether) {
-  RepairCourse course = CourseOf(Broken(150));
+  RepairCourse course = CourseOf(Broken(160));
   Drive(course, [](const std::vector<double>& values, std::size_t of_case) {
     const bool random = of_case >= kTraining && of_case < 2 * kTraining;
     return FailsIf((values[0] < 0.7) == (values[1] < 1.2) && !random);
@@ -179,9 +179,9 @@ TEST(RepairCourse, SaysWhatIsWrongWithAPlan) {
   narrow.repair.vary = "controller_parameters.turning_speed_factor=0.8..1";
   EXPECT_THAT(PlanOf(narrow).error().message,
               HasSubstr("the controller has 0.5, which is not in this range"));
-  EXPECT_EQ(
-      PlanOf(Broken(50)).error().message,
-      "--budget 50: at least 130 runs are needed: the original controller in 40 cases, and one generation");
+  EXPECT_EQ(PlanOf(Broken(50)).error().message,
+            "--budget 50: at least 140 runs are needed: the original controller in 40 cases, its best value "
+            "alone in 10, and one generation");
   EXPECT_FALSE(PlanOf(Broken(), 30).ok());
 }
 

@@ -13,6 +13,7 @@ namespace gauntlet {
 namespace {
 
 using testing::Contains;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -54,6 +55,17 @@ TEST(RepairResult, SaysWhereNoParameterMendsAnything) {
               StartsWith("Not mended by its parameters: no settings that were tried fail less"));
   EXPECT_THAT(SentencesOf(repair), Contains("No parameter alone mends a held-out case."));
   EXPECT_THAT(SentencesOf(repair), Contains(HasSubstr("which need other rules: case 25, case 26, case 27")));
+}
+
+TEST(RepairResult, SaysWhereOneParameterDoesBetterThanTheRepair) {
+  const Repair repair = RepairedSwarm([](double factor, double rate, std::size_t of_case) {
+    if (of_case >= 2 * testing_support::kTrainingCases) return factor < 0.9;
+    return of_case < testing_support::kTrainingCases && rate < 1.5 && (factor < 0.9 || of_case % 2 == 0);
+  });
+  EXPECT_FALSE(IsMended(repair));
+  EXPECT_THAT(OutcomeOf(repair),
+              StartsWith("Not mended by its parameters: held-out failures are fewer by 0.0 %"));
+  EXPECT_THAT(OutcomeOf(repair), EndsWith("One of them alone does better, which fresh cases have to judge."));
 }
 
 TEST(RepairResult, WhatDoesNotFailIsNotRepaired) {
