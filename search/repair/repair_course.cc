@@ -28,7 +28,7 @@ constexpr std::size_t kGuardsOf = 3;           // one of so many cases of a cand
 constexpr double kFewContacts = 15.0;          // cases, in which half of what is too much is chance
 constexpr std::size_t kBlocksOfCases = 3;   // of a generation's cases, between which candidates are dropped
 constexpr std::size_t kFinalists = 8;       // of which the repaired settings are chosen
-constexpr std::size_t kJoiningGuards = 10;  // in which it is seen whether values go together
+constexpr std::size_t kFewestJoining = 20;  // cases, in which it is seen whether values go together
 constexpr std::uint64_t kPartOf = 6;  // the budget: kept for the choice; spent at most on what goes together
 constexpr double kMoreTimeouts = 0.01;  // beside the original's share
 
@@ -98,7 +98,7 @@ Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const 
   if (const auto* scenario = controllers::FindScenario(experiment))
     plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
   const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
-  const std::size_t joining = std::min(plan.cases.guards, kJoiningGuards);
+  const std::size_t joining = std::min(plan.cases.first_held_out(), kFewestJoining);
   const std::size_t original = plan.cases.training + plan.cases.guards;
   const std::size_t least = original + joining + (candidates + kFinalists) * kFewestCases;
   if (static_cast<std::size_t>(spec.runs) < least)
@@ -359,29 +359,30 @@ void RepairCourse::ReadCurves() {
     if (best) joining_.push_back({key, settings_[*best][key]});
   }
   std::ranges::stable_sort(joining_, {}, [&](const auto& one) { return share[one.first]; });
+  const std::size_t all = plan_.cases.training + plan_.cases.guards;
+  const std::size_t each =
+      static_cast<std::size_t>(plan_.runs) / kPartOf / std::max(joining_.size(), std::size_t{1});
+  cases_ = Shuffled(0, all, plan_.seed, 0);
+  cases_.resize(std::min(all, std::max(each, kFewestJoining)));
 }
 
-// One more of them joins where they begin, if they go together.
+// One more of them joins where they do better together.
 std::vector<SettingsRun> RepairCourse::JoinNext() {
   stage_ = Stage::kJoining;
-  std::vector<std::size_t> cases = CurveCases();
-  const std::vector<std::size_t> random = Shuffled(plan_.cases.training, plan_.cases.guards, plan_.seed, 0);
-  cases.insert(cases.end(), random.begin(),
-               random.begin() + static_cast<std::ptrdiff_t>(std::min(random.size(), kJoiningGuards)));
-  if (joined_ && ScoreOf(*joined_, cases) < ScoreOf(start_, cases)) start_ = *joined_;
+  if (joined_ && ScoreOf(*joined_, cases_) < ScoreOf(start_, cases_)) start_ = *joined_;
   const auto most = static_cast<std::uint64_t>(plan_.runs) / kPartOf + plan_.cases.first_held_out();
-  if (tried_ == joining_.size() || (joined_ && searched_ + cases.size() > most)) {
+  if (tried_ == joining_.size() || (joined_ && searched_ + cases_.size() > most)) {
     stage_ = Stage::kSearch;
     cma_ = CmaEs(PlaceOf(settings_[start_]), kFirstStep, plan_.seed);
     BeginGeneration();
     return NextBlock();
   }
-  const auto& [key, value] = joining_[tried_++];
   std::vector<KeyValue> values = settings_[start_];
+  const auto& [key, value] = joining_[tried_++];
   values[key] = value;
   joined_ = AddSetting(std::move(values));
   std::vector<SettingsRun> runs;
-  for (const std::size_t one : cases) {
+  for (const std::size_t one : cases_) {
     if (TallyOf(*joined_, one).runs == 0) runs.push_back({*joined_, one});
   }
   searched_ += runs.size();

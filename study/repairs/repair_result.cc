@@ -6,10 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/comparison.h"
-#include "analysis/statistics/paired_tests.h"
-#include "analysis/statistics/proportions.h"
-#include "analysis/statistics/rank_test.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "master/campaign/stored_campaign.h"
@@ -30,7 +26,6 @@ constexpr double kMatters = 0.1;           // one that is told as an effect of t
 constexpr double kAtBound = 0.02;          // of the range
 constexpr double kLowerFitness = 0.44;  // A, from where on the effect is told (1 - kVarghaDelaney2000.small)
 constexpr std::size_t kMostNamedCases = 8;
-constexpr std::size_t kFewestUnitsOfIntervals = 10;
 
 struct Range {
   std::size_t first = 0;
@@ -46,41 +41,8 @@ double ShareIn(const Repair& repair, std::size_t setting, Range range) {
   return repair.course().TallyOf(setting, range.first, range.count).Share();
 }
 
-// Vargha and Delaney's.
-double FitnessA(const std::vector<double>& before, const std::vector<double>& after) {
-  return before.empty() || after.empty() ? 0.5 : analysis::MannWhitney(after, before).a;
-}
-
-// Intervals are over `units`, how many of the cases belong together each; over cases where these are too few.
 std::optional<RepairChange> ChangeIn(const Repair& repair, Range range, std::vector<std::size_t> units = {}) {
-  const auto repaired = repair.course().repaired();
-  if (!repaired || range.count == 0) return std::nullopt;
-  if (units.size() < kFewestUnitsOfIntervals) units.assign(range.count, 1);
-  RepairChange change{.cases = range.count};
-  std::vector<double> before;
-  std::vector<double> after;
-  std::vector<double> less;
-  double runs = 0.0;
-  for (std::size_t first = range.first; const std::size_t unit : units) {
-    const RepairTally old = repair.course().TallyOf(RepairCourse::kOriginal, first, unit);
-    const RepairTally now = repair.course().TallyOf(*repaired, first, unit);
-    before.push_back(old.Share());
-    after.push_back(now.Share());
-    less.push_back(old.Share() - now.Share());
-    runs += now.runs;
-    first += unit;
-  }
-  runs /= static_cast<double>(units.size());
-  if (runs == 0.0) return std::nullopt;
-  change.before = ShareIn(repair, RepairCourse::kOriginal, range);
-  change.after = ShareIn(repair, *repaired, range);
-  change.before_interval = analysis::MeanShareInterval(before, runs, analysis::kConfidence);
-  change.after_interval = analysis::MeanShareInterval(after, runs, analysis::kConfidence);
-  change.a = FitnessA(repair.course().TallyOf(RepairCourse::kOriginal, range.first, range.count).fitness,
-                      repair.course().TallyOf(*repaired, range.first, range.count).fitness);
-  change.less = change.before - change.after;
-  change.less_interval = analysis::MeanShareDifferenceInterval(less, analysis::kConfidence);
-  return change;
+  return ChangeOf(repair.course(), range.first, range.count, std::move(units));
 }
 
 bool FailsMostly(const Repair& repair, std::size_t setting, std::size_t of_case) {

@@ -8,25 +8,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "analysis/statistics/interval.h"
 #include "analysis/tables/section.h"
 #include "base/result.h"
 #include "search/repair/repair_course.h"
+#include "study/repairs/repair_change.h"
 #include "study/repairs/repair_proof.h"
 
 namespace gauntlet {
-
-// Failure probabilities of two settings in the same cases.
-struct RepairChange {
-  std::size_t cases = 0;
-  double before = 0.0;
-  double after = 0.0;
-  analysis::Interval before_interval;
-  analysis::Interval after_interval;
-  double a = 0.5;     // chance that a run has a higher fitness after than before, ties counting half
-  double less = 0.0;  // before - after
-  analysis::Interval less_interval;
-};
 
 // One of the parameters that vary.
 struct RepairedKey {

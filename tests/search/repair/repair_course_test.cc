@@ -180,8 +180,8 @@ TEST(RepairCourse, SaysWhatIsWrongWithAPlan) {
   EXPECT_THAT(PlanOf(narrow).error().message,
               HasSubstr("the controller has 0.5, which is not in this range"));
   EXPECT_EQ(PlanOf(Broken(50)).error().message,
-            "--budget 50: at least 140 runs are needed: the original controller in 40 cases, its best value "
-            "alone in 10, and one generation");
+            "--budget 50: at least 150 runs are needed: the original controller in 40 cases, its best value "
+            "alone in 20, and one generation");
   EXPECT_FALSE(PlanOf(Broken(), 30).ok());
 }
 
