@@ -99,7 +99,7 @@ Result<RepairPlan> MakeRepairPlan(const Experiment& experiment, std::span<const 
     plan.time_limit = scenario->TimeLimit(experiment.scenario_parameters);
   const std::size_t candidates = CmaEs(SettingsPoint(plan.varied.size(), 0.5), kFirstStep, 0).population();
   const std::size_t joining = std::min(plan.cases.first_held_out(), kFewestJoining);
-  const std::size_t original = plan.cases.training + plan.cases.guards;
+  const std::size_t original = plan.cases.first_held_out();
   const std::size_t least = original + joining + (candidates + kFinalists) * kFewestCases;
   if (static_cast<std::size_t>(spec.runs) < least)
     return InvalidInput(
@@ -359,7 +359,7 @@ void RepairCourse::ReadCurves() {
     if (best) joining_.push_back({key, settings_[*best][key]});
   }
   std::ranges::stable_sort(joining_, {}, [&](const auto& one) { return share[one.first]; });
-  const std::size_t all = plan_.cases.training + plan_.cases.guards;
+  const std::size_t all = plan_.cases.first_held_out();
   const std::size_t each =
       static_cast<std::size_t>(plan_.runs) / kPartOf / std::max(joining_.size(), std::size_t{1});
   cases_ = Shuffled(0, all, plan_.seed, 0);
