@@ -3,12 +3,12 @@
 // bytes may.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "base/double_bits.h"
 #include "base/result.h"
 
 namespace gauntlet {
@@ -21,7 +21,7 @@ class CanonicalEncoder {
     bytes_.append(bytes, sizeof bytes);
   }
   void Int(std::int64_t value) { Uint(static_cast<std::uint64_t>(value)); }
-  void Double(double value) { Uint(std::bit_cast<std::uint64_t>(value)); }
+  void Double(double value) { Uint(BitsOf(value)); }
   void Bool(bool value) { Uint(value ? 1 : 0); }
   void String(std::string_view value) {
     Uint(value.size());
@@ -51,7 +51,7 @@ class CanonicalDecoder {
     return value;
   }
   std::int64_t Int() { return static_cast<std::int64_t>(Uint()); }
-  double Double() { return std::bit_cast<double>(Uint()); }
+  double Double() { return DoubleOf(Uint()); }
   bool Bool() { return Uint() != 0; }
   std::string String() {
     const std::uint64_t size = Uint();

@@ -3,9 +3,10 @@
 // against forgery.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <string_view>
+
+#include "base/double_bits.h"
 
 namespace gauntlet {
 
@@ -20,7 +21,7 @@ class Fnv1a64 {
     for (int i = 0; i < 8; ++i) AddByte(static_cast<std::uint8_t>(value >> (8 * i)));
   }
   // The bits of the double; -0.0 and 0.0 differ on purpose.
-  void AddDouble(double value) { AddUint64(std::bit_cast<std::uint64_t>(value)); }
+  void AddDouble(double value) { AddUint64(BitsOf(value)); }
   void AddBytes(std::string_view bytes) {
     for (const char c : bytes) AddByte(static_cast<std::uint8_t>(c));
   }
@@ -39,7 +40,7 @@ class WordHash64 {
     state_ ^= state_ >> 32;
   }
   // The bits of the double; -0.0 and 0.0 differ on purpose.
-  void AddDouble(double value) { AddUint64(std::bit_cast<std::uint64_t>(value)); }
+  void AddDouble(double value) { AddUint64(BitsOf(value)); }
   std::uint64_t value() const { return state_; }
 
  private:

@@ -67,7 +67,7 @@ std::string AdviceOnUndefined(std::string symbol) {
 }
 
 bool TellsOfAnError(const std::string& line) {
-  for (const char* sign : {"rror:", "undefined", "CMake Error", "No rule to make"})
+  for (const char* sign : {"rror:", "undefined", "ld: "})
     if (line.find(sign) != std::string::npos) return true;
   return false;
 }
@@ -96,8 +96,7 @@ std::string BuildErrors(const std::string& output) {
                         found[1].str());
     }
     if (std::regex_search(line, found, undefined)) one = AdviceOnUndefined(found[1]);
-    if (line.find("libgauntlet_sdk.a'") != std::string::npos ||
-        line.find("libgauntlet_argos.a'") != std::string::npos)
+    if (line.find("cannot find -lgauntlet_") != std::string::npos)
       one = "Gauntlet's SDK is not built: give './dev build' in the folder of Gauntlet's sources";
     if (!one.empty() && said.insert(one).second) advice.push_back(one);
   }

@@ -16,10 +16,10 @@
 namespace gauntlet {
 namespace {
 
-void Configure(CLI::App& app, CommandAction& chosen) {
+void Configure(CLI::App& app, const std::string& version, CommandAction& chosen) {
   app.name("gauntlet");
   app.description("Finds the obstacle courses in which a robot swarm fails.");
-  app.set_version_flag("--version", "gauntlet " GAUNTLET_VERSION);
+  app.set_version_flag("--version", version);
   app.get_formatter()->column_width(34);
   app.require_subcommand(1);
   CommandParser parser(app, chosen);
@@ -118,7 +118,7 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, CommandContex
   CLI::App app;
   try {
     CommandAction chosen;
-    Configure(app, chosen);
+    Configure(app, context.version, chosen);
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     const Result<ExitCode> code = chosen(context);
     return code ? *code : Fail(context, code.error());

@@ -33,6 +33,7 @@ struct CommandContext {
   std::function<std::unique_ptr<slurm::SlurmClient>()> slurm = [] {
     return std::make_unique<slurm::CommandLineSlurm>();
   };
+  std::string version = "gauntlet";  // what --version prints
 };
 
 // "gauntlet: MESSAGE", one line whatever the message holds.

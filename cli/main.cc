@@ -13,6 +13,7 @@
 
 #include "base/shell_quoted.h"
 #include "base/system/resource_limits.h"
+#include "base/version.h"
 #include "cli/command_line.h"
 #include "cli/output/standard_output.h"
 
@@ -39,7 +40,8 @@ int main(int argc, char** argv) {
                                    .err = std::cerr,
                                    .err_is_terminal = isatty(STDERR_FILENO) == 1,
                                    .out_is_terminal = isatty(STDOUT_FILENO) == 1,
-                                   .program = ProgramName(argc > 0 ? argv[0] : "gauntlet")};
+                                   .program = ProgramName(argc > 0 ? argv[0] : "gauntlet"),
+                                   .version = gauntlet::VersionText("gauntlet")};
   if (!prepared) return gauntlet::Fail(context, prepared.error());
   const int code =
       gauntlet::RunCommandLine(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc), context);

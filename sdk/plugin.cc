@@ -1,5 +1,10 @@
 #include "sdk/plugin.h"
 
+// Headers of libstdc++ ask it of the C library, and before glibc 2.32 there was none to link plug-ins with.
+// 0: count references as if there were several threads, which is right with one, too.
+extern "C" __attribute__((visibility("hidden"))) char __libc_single_threaded;
+char __libc_single_threaded = 0;
+
 namespace gauntlet::sdk {
 namespace {
 

@@ -66,23 +66,24 @@ constexpr void AddSizes(ConstantText& text) {
   (..., (text.Add(" "), text.Add(sizeof(Types))));
 }
 
-// What C++ code of this compiler, standard library and set of headers agrees on.
+#if defined(_GLIBCXX_RELEASE) && _GLIBCXX_RELEASE <= 10 && defined(_GLIBCXX_SPAN)
+#error "std::span of GCC 10 has another layout than Gauntlet's: put sdk/gcc10 of these headers first (-I)"
+#endif
+
+// What C++ code of this standard library and set of headers agrees on. Releases of GCC do not count:
+// since GCC 5 libstdc++ keeps its layouts, but for what was new in C++20, which is looked at above.
 inline constexpr ConstantText kPluginFingerprint = [] {
   ConstantText text;
 #if defined(__x86_64__)
   text.Add("x86-64");
 #endif
 #if defined(_GLIBCXX_RELEASE)
-  text.Add(" libstdc++ ");
-  text.Add(_GLIBCXX_RELEASE);
-  text.Add(" strings ");
+  text.Add(" libstdc++ strings ");
   text.Add(_GLIBCXX_USE_CXX11_ABI);
 #endif
 #if defined(_GLIBCXX_DEBUG)
   text.Add(" debug");
 #endif
-  text.Add(" C++ ");
-  text.Add(__cplusplus);
   text.Add(" Eigen ");
   text.Add(EIGEN_WORLD_VERSION * 10000 + EIGEN_MAJOR_VERSION * 100 + EIGEN_MINOR_VERSION);
   text.Add(" aligned ");

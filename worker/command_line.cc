@@ -180,7 +180,7 @@ int PrintGoldenHashes(const Result<proto::GoldenHashes>& hashes) {
 int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   CLI::App app(kDescription, "gauntlet-worker");
   app.footer(kFooter);
-  app.set_version_flag("--version", "gauntlet-worker " GAUNTLET_VERSION);
+  app.set_version_flag("--version", functions.version);
   CommandLine line;
   AddOptions(app, line);
   try {

@@ -12,6 +12,7 @@ struct WorkerFunctions {
   LoadPluginFunction load_plugin = {};  // without: it is never given a plug-in, as the next
   DescribePluginFunction describe_plugin = {};
   DescribeBeginningFunction describe_beginning = {};
+  std::string version = "gauntlet-worker";  // what --version prints
 };
 
 // The exit code. To be called from main(), before any thread exists.

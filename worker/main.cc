@@ -1,4 +1,5 @@
 // gauntlet-worker: simulates runs for a master.
+#include "base/version.h"
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
 #include "worker/plugin/plugin_library.h"
@@ -11,5 +12,6 @@ int main(int argc, char** argv) {
                                        .golden_hashes = worker::GoldenHashes,
                                        .load_plugin = worker::LoadPlugin,
                                        .describe_plugin = worker::DescribePlugin,
-                                       .describe_beginning = worker::DescribeBeginning});
+                                       .describe_beginning = worker::DescribeBeginning,
+                                       .version = gauntlet::VersionText("gauntlet-worker")});
 }

@@ -7,24 +7,24 @@
 namespace gauntlet {
 namespace {
 
-// What the environment's `variable` names, else `name` beside this executable; "": itself.
-std::string ProgramPath(const char* variable, const char* name) {
-  const char* given = std::getenv(variable);
-  if (given != nullptr && *given != '\0') return given;
-  std::error_code error;
-  std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) path = "gauntlet";
-  return *name == '\0' ? path.string() : path.replace_filename(name).string();
+// "" when there is none.
+std::string Variable(const char* name) {
+  const char* given = std::getenv(name);
+  return given == nullptr ? "" : given;
 }
 
 }  // namespace
 
 std::string MasterProgramPath() {
-  return ProgramPath("GAUNTLET_PROGRAM", "");
+  if (std::string given = Variable("GAUNTLET_PROGRAM"); !given.empty()) return given;
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? "gauntlet" : path.string();
 }
 
 std::string WorkerProgramPath() {
-  return ProgramPath("GAUNTLET_WORKER", "gauntlet-worker");
+  if (std::string given = Variable("GAUNTLET_WORKER"); !given.empty()) return given;
+  return std::filesystem::path(MasterProgramPath()).replace_filename("gauntlet-worker");
 }
 
 }  // namespace gauntlet

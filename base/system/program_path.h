@@ -5,9 +5,10 @@
 
 namespace gauntlet {
 
-// $GAUNTLET_PROGRAM, which a bundle's wrapper sets, else this executable; "gauntlet" when it cannot be known.
+// $GAUNTLET_PROGRAM, which the launcher of a release sets, else this executable; "gauntlet" when it cannot be
+// known.
 std::string MasterProgramPath();
-// $GAUNTLET_WORKER, else gauntlet-worker beside this executable.
+// $GAUNTLET_WORKER, else gauntlet-worker beside MasterProgramPath().
 std::string WorkerProgramPath();
 
 }  // namespace gauntlet

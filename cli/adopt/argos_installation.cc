@@ -11,7 +11,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/process_call.h"
 #include "cli/adopt/recorder_source.h"
-#include "cli/build_errors.h"
+#include "cli/compiler.h"
 
 namespace gauntlet {
 namespace {
@@ -59,24 +59,16 @@ Result<ArgosInstallation> FindArgos() {
 Status CompileRecorder(const ArgosInstallation& argos, const std::string& file, std::ostream& said) {
   const std::string source = file + ".cpp";
   TRY(ReplaceFile(source, kRecorderSource, kReadableByAll));
-  std::vector<std::string> arguments = {
-      Variable("CXX", "c++"), "-std=c++17", "-O2", "-fPIC", "-shared", source, "-o", file};
+  std::vector<std::string> arguments = {"-std=c++17", "-O2", "-fPIC", "-shared", source, "-o", file};
   for (const std::string& flag : PackageFlags(argos.prefix)) arguments.push_back(flag);
-  const Result<CallOutput> done = CallProcess(arguments, "", {});
+  const Status compiled = RunCompiler(std::move(arguments), "the recorder of robots", said);
   std::error_code ignored;
   fs::remove(source, ignored);
-  if (!done && done.error().kind == ErrorKind::kNotFound)
-    return InvalidInput(
-        fmt::format("there is no compiler {}: the recorder of robots is compiled against ARGoS. "
-                    "Install g++, or name another one by CXX",
-                    Printable(arguments.front())));
-  if (!done) return done.error();
-  if (done->exit_code == 0) return Ok{};
-  said << BuildErrors(done->err) << std::flush;
+  if (compiled || compiled.error().kind != ErrorKind::kInvalidInput) return compiled;
   return InvalidInput(
-      fmt::format("the recorder of robots does not compile against the ARGoS in {}: see above. ARGoS "
-                  "may be too old, or the headers of Lua may be missing",
-                  Printable(argos.prefix)));
+      fmt::format("{}. It is compiled against the ARGoS in {}, which may be too old; or the "
+                  "headers of Lua may be missing",
+                  compiled.error().message, Printable(argos.prefix)));
 }
 
 }  // namespace gauntlet

@@ -1,6 +1,4 @@
-// gauntlet build-controller: sources of controllers that were written for ARGoS become a plug-in.
-#include <algorithm>
-#include <cstdlib>
+// gauntlet build-controller: sources of controllers, written for ARGoS or for Gauntlet, become a plug-in.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,12 +7,12 @@
 #include <CLI/CLI.hpp>
 
 #include "base/printable.h"
+#include "base/split.h"
 #include "base/system/atomic_file.h"
-#include "base/system/process_call.h"
 #include "base/system/program_path.h"
 #include "base/system/temporary_folder.h"
-#include "cli/build_errors.h"
 #include "cli/commands.h"
+#include "cli/compiler.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
 #include "master/directory/plugins.h"
@@ -34,51 +32,8 @@ struct BuildControllerOptions {
   std::string argos;
   std::string output;
   std::string table;
-  std::string sdk;
+  bool dry_run = false;
 };
-
-// As an argument of CMake, whatever bytes it holds.
-std::string Quoted(const std::string& text) {
-  return fmt::format("[==[{}]==]", text);
-}
-std::string Quoted(const fs::path& path) {
-  return Quoted(fs::absolute(path).lexically_normal().string());
-}
-
-std::string ProjectText(const BuildControllerOptions& options, bool with_table) {
-  std::string sources;
-  for (const std::string& source : options.sources) sources += " " + Quoted(fs::path(source));
-  std::string folders;
-  for (const std::string& folder : options.include_folders) folders += " " + Quoted(fs::path(folder));
-  std::string definitions;
-  for (const std::string& definition : options.definitions) definitions += " " + Quoted(definition);
-  const fs::path output = fs::absolute(options.output);
-  return fmt::format(R"(cmake_minimum_required(VERSION 3.25)
-project(controller LANGUAGES CXX)
-set(CMAKE_BUILD_TYPE Release)
-find_package(Gauntlet REQUIRED)
-gauntlet_add_argos_plugin(controller SOURCES{}{})
-target_include_directories(controller PRIVATE{})
-target_compile_definitions(controller PRIVATE{})
-set_target_properties(controller PROPERTIES PREFIX "" SUFFIX "" OUTPUT_NAME [==[{}]==] LIBRARY_OUTPUT_DIRECTORY {})
-)",
-                     sources, with_table ? " TABLE table.cc" : "", folders, definitions,
-                     output.filename().string(), Quoted(output.parent_path()));
-}
-
-Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
-  // Without any, as in some batch jobs, CMake does not find its own files.
-  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", /*overwrite=*/0);
-  Result<CallOutput> done = CallProcess(arguments, "", {});
-  if (!done && done.error().kind == ErrorKind::kNotFound) {
-    return InvalidInput(
-        "there is no cmake in PATH, which plug-ins are built with: install CMake 3.25 or later");
-  }
-  if (!done) return done.error();
-  if (done->exit_code == 0) return Ok{};
-  context.err << BuildErrors(done->out + done->err) << std::flush;
-  return InvalidInput("the plug-in could not be built: see above");
-}
 
 Result<std::string> ReadTable(CommandContext& context, const std::string& argos) {
   TRY(const std::string text, ReadSmallFile(argos, kMostFile));
@@ -97,6 +52,10 @@ Status CheckBuildOptions(const BuildControllerOptions& options) {
     return options.argos.empty() ? InvalidInput("--table needs the file that it is made of: --argos FILE")
                                  : Status(Ok{});
   }
+  if (options.dry_run && !options.argos.empty())
+    return InvalidInput(
+        "--dry-run does without --argos: write the file's parameters by --table table.cc first, "
+        "and name table.cc among the sources");
   if (options.sources.empty()) return InvalidInput("which sources? name one or more C++ files");
   if (options.output.empty()) return InvalidInput("where to? say -o libNAME.so");
   std::error_code error;
@@ -117,31 +76,50 @@ Status CheckBuildOptions(const BuildControllerOptions& options) {
   return Ok{};
 }
 
-Status FindSdk(const fs::path& prefix) {
-  std::error_code error;
-  for (const char* libraries : {"lib", "lib64"}) {
-    if (fs::exists(prefix / libraries / "cmake/Gauntlet/GauntletConfig.cmake", error)) return Ok{};
+// Sources for Gauntlet say what they export; for those that were written for ARGoS it is added.
+Result<bool> ExportsItself(const std::vector<std::string>& sources) {
+  for (const std::string& source : sources) {
+    TRY(const std::string text, ReadSmallFile(source, kMostFile));
+    for (const char* macro : {"GAUNTLET_PLUGIN(", "GAUNTLET_SCENARIO_PLUGIN("})
+      if (text.find(macro) != text.npos) return true;
   }
-  return InvalidInput(
-      fmt::format("{}: the SDK is not there: install it with 'cmake --install BUILD --prefix DIR --component "
-                  "sdk' and say --sdk DIR",
-                  Printable(prefix.string())));
+  return false;
+}
+
+// What follows the compiler's name in the call that makes the plug-in.
+Result<std::vector<std::string>> CallOf(const BuildControllerOptions& options,
+                                        std::vector<std::string> sources) {
+  const std::string prefix = fs::path(MasterProgramPath()).parent_path().parent_path();
+  const Result<std::string> flags = ReadSmallFile(prefix + "/share/gauntlet/plugin.flags", kMostFile);
+  if (!flags) return InvalidInput(flags.error().message + ": it comes with every build and every release");
+  TRY(const bool exports, ExportsItself(sources));
+  if (!exports) sources.push_back(prefix + "/share/gauntlet/plugin_main.cc");
+  std::vector<std::string> call;
+  for (const std::string& line : Split(*flags, '\n')) {
+    if (line == "SOURCES") {
+      for (const std::string& folder : options.include_folders) call.push_back("-I" + folder);
+      for (const std::string& definition : options.definitions) call.push_back("-D" + definition);
+      for (const std::string& source : sources) call.push_back(fs::absolute(source));
+    } else if (const std::size_t at = line.find("$SDK"); at != line.npos) {
+      call.push_back(line.substr(0, at) + prefix + line.substr(at + 4));
+    } else if (!line.empty()) {
+      call.push_back(line);
+    }
+  }
+  call.insert(call.end(), {"-o", fs::absolute(options.output)});
+  return call;
 }
 
 Status Build(CommandContext& context, const BuildControllerOptions& options, const std::string& table) {
   const TemporaryFolder scratch("build");
   if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
+  std::vector<std::string> sources = options.sources;
   if (!table.empty()) {
-    TRY(WriteOutputFile(scratch.path() + "/table.cc", table));
+    sources.push_back(scratch.path() + "/table.cc");
+    TRY(WriteOutputFile(sources.back(), table));
   }
-  TRY(WriteOutputFile(scratch.path() + "/CMakeLists.txt", ProjectText(options, !table.empty())));
-  const std::string prefix =
-      options.sdk.empty() ? fs::path(MasterProgramPath()).parent_path().parent_path().string() : options.sdk;
-  TRY(FindSdk(prefix));
-  const std::string build = scratch.path() + "/build";
-  TRY(RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
-                         "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()}));
-  TRY(RunCMake(context, {"cmake", "--build", build}));
+  TRY(std::vector<std::string> call, CallOf(options, std::move(sources)));
+  TRY(RunCompiler(std::move(call), "the plug-in", context.err));
   const Result<std::string> usable = AddPluginFile(options.output);
   if (usable) return Ok{};
   std::error_code ignored;
@@ -155,6 +133,11 @@ Result<ExitCode> RunBuildController(CommandContext& context, const BuildControll
   if (!options.argos.empty()) {
     TRY(table, ReadTable(context, options.argos));
   }
+  if (options.dry_run) {
+    TRY(const std::vector<std::string> call, CallOf(options, options.sources));
+    context.out << CompilerCall(call) << '\n';
+    return kExitDone;
+  }
   const std::string& written = options.table.empty() ? options.output : options.table;
   TRY(options.table.empty() ? Build(context, options, table) : WriteOutputFile(options.table, table));
   PrintMessage(context, fmt::format("wrote {}", Printable(written)));
@@ -165,23 +148,25 @@ Result<ExitCode> RunBuildController(CommandContext& context, const BuildControll
 
 void AddBuildController(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("build-controller", "make a plug-in from controllers written for ARGoS", RunBuildController);
-  command.add_option("SOURCE", options.sources, "unchanged C++ sources of foot-bot controllers");
+      parser.Add("build-controller", "make a plug-in from controllers written in C++", RunBuildController);
+  command.add_option("SOURCE", options.sources,
+                     "C++ sources: foot-bot controllers of ARGoS, unchanged, or plug-ins (sdk/README.md)");
   AddValue(command, "--argos", "F", options.argos,
            "take devices and parameters from the <controllers> of this file");
   AddValue(command, "-o,--output", "F", options.output, "file of the plug-in, such as libmine.so");
   AddValue(command, "-I,--include", "DIR", options.include_folders, "a folder of headers; repeatable");
   AddValue(command, "-D,--define", "NAME[=VALUE]", options.definitions,
            "a macro that the sources' own build defines, such as GIT_BRANCH='\"main\"'; repeatable");
-  AddValue(command, "--sdk", "DIR", options.sdk,
-           "folder in which the SDK was installed (default: that of this program)");
   AddValue(command, "--table", "F", options.table,
-           "build nothing; write the parameters of the --argos file as C++, for CMake");
+           "build nothing; write the parameters of the --argos file as C++, for a build of your own");
+  command.add_flag("--dry-run", options.dry_run,
+                   "print the call of the compiler that makes the plug-in, and end");
   command.footer(
-      R"(Compiles the sources against Gauntlet's own headers of the ARGoS interface; argos/README.md lists what these
-offer. With --argos, every numeric attribute below <params> becomes a parameter: its name is its path, and its
-default is the value in the file. Without --argos, the controllers have no parameters and get the devices that
-they ask for in Init. The command needs a C++ compiler, CMake and Eigen; Gauntlet's package contains Eigen.
+      R"(Compiles the sources with one call of the compiler (c++, or the one that CXX names: g++ 10 or later), against
+Gauntlet's own headers of the ARGoS interface, whose argos/README.md lists what these offer, and those of its SDK.
+With --argos, every numeric attribute below <params> becomes a parameter: its name is its path, and its default is
+the value in the file. Without --argos, controllers of ARGoS have no parameters and get the devices that they ask
+for in Init. Eigen is needed; Gauntlet's package contains it.
 
 Examples:
   gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so

@@ -7,6 +7,7 @@
 
 #include "base/nearest_name.h"
 #include "base/system/atomic_file.h"
+#include "base/system/program_path.h"
 #include "search/experiment/experiment_file.h"
 
 namespace gauntlet {
@@ -36,8 +37,7 @@ Result<std::string> ReadFile(const fs::path& path) {
 
 std::vector<fs::path> ExperimentDirectories() {
   if (const char* override_directory = std::getenv("GAUNTLET_EXPERIMENTS_DIR")) return {override_directory};
-  std::error_code error;
-  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path programs = fs::path(MasterProgramPath()).parent_path();
   std::vector<fs::path> directories;
   for (const char* place : {"../share/gauntlet/experiments", GAUNTLET_EXPERIMENTS_FROM_PROGRAM})
     directories.push_back((programs / place).lexically_normal());

@@ -121,8 +121,33 @@ TEST_F(BuildController, NamesWhatIsWrong) {
                 "cut.argos:1:");
   const std::string idle = File("idle.cpp", "int Idle() { return 1; }\n");
   ExpectRefusal({idle, "-o", library}, "it brings neither a controller nor a scenario");
-  ExpectRefusal({idle, "-o", library, "--sdk", folder_}, "the SDK is not there");
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
+}
+
+TEST_F(BuildController, SaysWhichCompilerItNeeds) {
+  const std::string library = folder_ / "libbad.so";
+  const std::string source = File("fine.cpp", "int Fine() { return 1; }\n");
+  setenv("CXX", (folder_ / "absent").c_str(), 1);
+  ExpectRefusal({source, "-o", library}, "there is no compiler");
+  const std::string old = File("old-compiler",
+                               "#!/bin/sh\n[ \"$1\" != -dumpversion ] || { echo 8.5.0; exit; }\n"
+                               "echo \"unrecognized option '-std=gnu++20'\" >&2; exit 1\n");
+  fs::permissions(old, fs::perms::owner_all);
+  setenv("CXX", old.c_str(), 1);
+  ExpectRefusal({source, "-o", library}, "is release 8.5.0, and g++ 10 or later is needed");
+  unsetenv("CXX");
+}
+
+// What a shell makes of the call that --dry-run prints is the same plug-in.
+TEST_F(BuildController, PrintsItsCallOfTheCompiler) {
+  const std::string library = folder_ / "lib my bird.so";
+  const ProcessResult told =
+      Run({std::string(GAUNTLET_SOURCE_DIR) + "/sdk/example/my_bird.cc", "-o", library, "--dry-run"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_FALSE(fs::exists(library));
+  EXPECT_EQ(testing_support::RunProcess({"/bin/sh", "-c", told.out}).exit_code, 0) << told.out;
+  EXPECT_THAT(testing_support::RunProcess({GAUNTLET_BINARY_DIR "/gauntlet", "list", "--plugin", library}).out,
+              HasSubstr("my-bird"));
 }
 
 TEST_F(BuildController, DefinesTheMacrosThatItIsGiven) {

@@ -18,9 +18,9 @@ using testing_support::RunProcess;
 
 constexpr const char* kWorker = GAUNTLET_BINARY_DIR "/gauntlet-worker";
 
-TEST(CommandLineTest, VersionIsOneLineAndGoldenHashesAreOneForEachController) {
+TEST(CommandLineTest, NamesVersionCommitAndCompilerAndGoldenHashesAreOneForEachController) {
   EXPECT_THAT(RunProcess({kWorker, "--version"}).out,
-              MatchesRegex("gauntlet-worker [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+              MatchesRegex("gauntlet-worker [0-9]+\\.[0-9]+\\.[0-9]+\ncommit [0-9a-z -]+, compiled by .+\n"));
   const ProcessResult golden = RunProcess({kWorker, "--golden"});
   EXPECT_EQ(golden.exit_code, 0);
   EXPECT_THAT(golden.out, MatchesRegex("([a-z-]+ [0-9a-f]{16}\n)+"));

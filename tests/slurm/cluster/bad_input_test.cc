@@ -187,7 +187,7 @@ TEST_F(SlurmTrouble, TheBundlesProgramsSubmitAndServe) {
   const SmallCampaign campaign;
   const std::string bundle = scratch_ / "bundle";
   const ProcessResult made =
-      RunProcess({GAUNTLET_SOURCE_DIR "/slurm/make_bundle", GAUNTLET_BINARY_DIR, bundle});
+      RunProcess({GAUNTLET_SOURCE_DIR "/release/make_bundle", GAUNTLET_BINARY_DIR, bundle});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   std::vector<std::string> command = SubmitArguments(campaign, "job");
   command.insert(command.begin(), bundle + "/bin/gauntlet");

@@ -2,25 +2,24 @@
 // of that direction next; for everything else it is a CRadians.
 #pragma once
 
-#include <bit>
-
 #include <argos3/core/utility/datatypes/datatypes.h>
 #include <argos3/core/utility/math/angles.h>
+
+#include "base/double_bits.h"
 
 namespace argos {
 
 class CBearing : public CRadians {
  public:
   constexpr CBearing() = default;
-  explicit constexpr CBearing(Real value) : CBearing(CRadians(value)) {}
+  explicit CBearing(Real value) : CBearing(CRadians(value)) {}
   // Without its sine and cosine. Implicit, so that readings take any angle.
-  constexpr CBearing(const CRadians& angle)
-      : CRadians(angle), known_(~std::bit_cast<UInt64>(angle.GetValue())) {}
-  constexpr CBearing(Real value, Real sine, Real cosine)
-      : CRadians(value), known_(std::bit_cast<UInt64>(value)), sine_(sine), cosine_(cosine) {}
+  CBearing(const CRadians& angle) : CRadians(angle), known_(~gauntlet::BitsOf(angle.GetValue())) {}
+  CBearing(Real value, Real sine, Real cosine)
+      : CRadians(value), known_(gauntlet::BitsOf(value)), sine_(sine), cosine_(cosine) {}
 
   // Whether it still has the value that the other two are of.
-  bool HasSine() const { return std::bit_cast<UInt64>(GetValue()) == known_; }
+  bool HasSine() const { return gauntlet::BitsOf(GetValue()) == known_; }
   Real GetSine() const { return sine_; }
   Real GetCosine() const { return cosine_; }
 
