@@ -38,6 +38,15 @@ TEST_F(EarlierVersionTest, ItsCampaignIsShownReplayedAndMadeLonger) {
   EXPECT_THAT(Done({"resume", dir, "--workers", "1", "--set", "search.runs=30"}), HasSubstr("30 runs"));
 }
 
+TEST_F(EarlierVersionTest, ItsStoppedCampaignEndsAsItWouldHaveAndIsComparedWithANewOne) {
+  const std::string dir = CopyOf("stopped");
+  EXPECT_THAT(Done({"resume", dir, "--workers", "1"}),
+              HasSubstr("8b67df05c7fc6a1c9a4847704065137b124a3080bc4845533b2a354c806129bb"));
+  const std::string anew = scratch_ / "anew";
+  Done({"evolve", "flocking", "--population", "6", "--generations", "6", "--seed", "3", "--dir", anew});
+  EXPECT_THAT(Done({"compare", dir, anew}), HasSubstr("same 6 cases"));
+}
+
 TEST_F(EarlierVersionTest, ItsStudyGoesOnWhateverDefaultsItsSearchesDoNotRead) {
   EXPECT_THAT(Done({"resume", CopyOf("study"), "--workers", "1"}), HasSubstr("evolved"));
 }
