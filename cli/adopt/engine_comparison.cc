@@ -33,7 +33,6 @@ namespace gauntlet {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr std::size_t kMostSources = 5000;
 constexpr std::size_t kMostSourceBytes = std::size_t{1} << 20;
@@ -185,7 +184,7 @@ class Comparison {
   // Those that ended: cases that break a rule of ours have none.
   Result<std::vector<std::string>> Runs() const {
     TRY(const std::string text, Gauntlet({"show", Own("runs"), "--json", "--runs"}));
-    const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+    const nlohmann::json document = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
     std::vector<std::string> runs;
     if (document.contains("runs")) {
       for (const json& run : document["runs"])

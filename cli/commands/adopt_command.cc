@@ -17,8 +17,6 @@
 namespace gauntlet {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kShownScores = 8;
 
 struct AdoptOptions {
@@ -75,15 +73,15 @@ void PrintText(CommandContext& context, const AdoptOptions& options, const Adopt
     context.out << fmt::format("\n  {} evolve {}\n", context.program, PastedPath(options.output));
 }
 
-json ListOf(const std::vector<ArgosRemark>& remarks) {
-  json list = json::array();
+nlohmann::json ListOf(const std::vector<ArgosRemark>& remarks) {
+  nlohmann::json list = nlohmann::json::array();
   for (const ArgosRemark& remark : remarks)
     list.push_back({{"element", remark.element}, {"meaning", remark.meaning}});
   return list;
 }
 
-json DocumentOf(const AdoptOptions& options, const Adopted& adopted) {
-  json scores = json::array();
+nlohmann::json DocumentOf(const AdoptOptions& options, const Adopted& adopted) {
+  nlohmann::json scores = nlohmann::json::array();
   for (const ScoreCandidate& one : adopted.scores)
     scores.push_back(
         {{"from", one.from}, {"values", {one.first, one.other_seed}}, {"with_obstacle", one.with_obstacle}});
@@ -105,7 +103,7 @@ json DocumentOf(const AdoptOptions& options, const Adopted& adopted) {
             {"trusted", adopted.engine.trusted},
             {"said", adopted.engine.said}}},
           {"seconds", adopted.seconds},
-          {"experiment", options.check ? json(nullptr) : json(options.output)}};
+          {"experiment", options.check ? nlohmann::json(nullptr) : nlohmann::json(options.output)}};
 }
 
 Result<ExitCode> RunAdopt(CommandContext& context, const AdoptOptions& options) {

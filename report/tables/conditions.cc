@@ -63,7 +63,7 @@ void Judge(const CampaignSummary& summary, Condition& condition) {
   condition.interval = analysis::MeanShareInterval(shares, each, analysis::kConfidence);
 }
 
-std::string Named(const Condition& condition) {
+std::string ShareAndSettings(const Condition& condition) {
   return fmt::format("{:.1f} % ({})", 100.0 * condition.share, condition.settings);
 }
 
@@ -117,7 +117,7 @@ std::string RangeOf(const std::vector<Condition>& conditions) {
   if (known.empty()) return "";
   const auto [least, most] =
       std::ranges::minmax_element(known, {}, [](const auto* one) { return one->share; });
-  return fmt::format("from {} to {}", Named(**least), Named(**most));
+  return fmt::format("from {} to {}", ShareAndSettings(**least), ShareAndSettings(**most));
 }
 
 }  // namespace gauntlet

@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kForkRetryDelay{1};
 constexpr std::size_t kDescriptorsPerSlot = 2;
 
 // poll ignores negative descriptors.
-pollfd Watch(int fd, bool writing = false) {
+pollfd Watched(int fd, bool writing = false) {
   return {.fd = fd, .events = static_cast<short>(writing ? POLLIN | POLLOUT : POLLIN), .revents = 0};
 }
 
@@ -46,10 +46,10 @@ RunnerPool::RunnerPool(ForkServer& server, int slots)
 std::vector<pollfd> RunnerPool::Descriptors() const {
   std::vector<pollfd> descriptors;
   descriptors.reserve(1 + kDescriptorsPerSlot * slots_.size());
-  descriptors.push_back(Watch(lost_ ? -1 : server_.fd(), server_.congested()));
+  descriptors.push_back(Watched(lost_ ? -1 : server_.fd(), server_.congested()));
   for (const Slot& slot : slots_) {
-    descriptors.push_back(Watch(slot.pipe.get(), !slot.unsent.empty()));
-    descriptors.push_back(Watch(slot.output.get()));
+    descriptors.push_back(Watched(slot.pipe.get(), !slot.unsent.empty()));
+    descriptors.push_back(Watched(slot.output.get()));
   }
   return descriptors;
 }
