@@ -187,7 +187,7 @@ class Comparison {
     const nlohmann::json document = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
     std::vector<std::string> runs;
     if (document.contains("runs")) {
-      for (const json& run : document["runs"])
+      for (const nlohmann::json& run : document["runs"])
         if (run["verdict"] == "completed") runs.push_back(std::to_string(run["id"].get<int>()));
     }
     if (runs.empty()) return InvalidInput("no run of its cases ended there");
