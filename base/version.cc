@@ -1,7 +1,5 @@
 #include "base/version.h"
 
-#include "commit.h"  // made by commit.cmake
-
 namespace gauntlet {
 
 std::string VersionText(const std::string& program) {

@@ -1,4 +1,5 @@
 // `gauntlet build-controller` with a real compiler: the plug-in that it makes, and what it refuses.
+// Covers: cli/compiler.cc
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -211,6 +211,7 @@ const std::vector<Room>& House() {
         "report/pages",   "report/ui"},
        kRunData + kSwarmData + kBehaviours + Prefixes{"controllers/command/"},
        {"box2d", "zmq", "sqlite3"}},
+      {"release", {}, {}, {"box2d", "zmq", "google/", "sqlite3", "nlohmann/", "thread", "filesystem"}},
   };
   return house;
 }

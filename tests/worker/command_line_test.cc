@@ -1,4 +1,5 @@
 // gauntlet-worker as it is shipped: its command line and the real simulation behind it.
+// Covers: base/version.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
