@@ -36,6 +36,7 @@ int NewestIn(const std::string& file, std::string_view mark) {
   if (bytes == MAP_FAILED) return -1;
   const std::string_view text(static_cast<const char*>(bytes), size);
   int newest = -1;
+  if (text.starts_with("\177ELF\1")) return newest;  // of 32-bit programs
   for (std::size_t at = text.find(mark); at != text.npos; at = text.find(mark, at)) {
     at += mark.size();
     int number = -1;

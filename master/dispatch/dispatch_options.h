@@ -54,7 +54,7 @@ struct DispatchOptions {
 struct CampaignIdentity {
   std::string campaign_id;
   std::uint64_t epoch = 1;  // number of this master start; must fit 32 bits: it begins the fencing numbers
-  std::string software_version;
+  std::string software_version;       // which may be another one; told to those who speak another protocol
   proto::GoldenHashes golden_hashes;  // of the controllers that the campaign uses
 };
 

@@ -151,9 +151,6 @@ std::vector<std::string> WhatDiffers(const RunSet& first, const RunSet& second) 
     for (const auto& [key, value] : here) {
       if (!there.contains(key)) differs(key, "none", value);
     }
-    if (origin->software_version != base.software_version) {
-      differs("version", base.software_version, origin->software_version);
-    }
     for (const auto& [controller, hash] : base.golden_hashes) {
       const auto other = origin->golden_hashes.find(controller);
       if (other == origin->golden_hashes.end() || other->second == hash) continue;

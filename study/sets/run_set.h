@@ -48,7 +48,8 @@ Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const R
 Result<RunSet> ReadRunSet(const std::string& text, const std::string& metric);
 
 // Why the runs of the two, or of one of them among each other, are no like for like: another scenario, other
-// parameters of it, another version, another simulation. Controllers may differ: that is what is compared.
+// parameters of it, another simulation, whatever the version. Controllers may differ: that is what is
+// compared.
 std::vector<std::string> WhatDiffers(const RunSet& first, const RunSet& second);
 
 }  // namespace gauntlet

@@ -67,6 +67,11 @@ TEST_F(LauncherTest, TakesANewerLibraryOfTheMachineAndKeepsItsPaths) {
             Not(HasSubstr("/lib/libstdc++"))));
 }
 
+TEST_F(LauncherTest, LeavesLibrariesOf32BitProgramsAlone) {
+  std::ofstream(root() + "/elsewhere/libstdc++.so.6") << "\177ELF\1 GLIBCXX_3.4.9999 ";
+  EXPECT_THAT(Start(root() + "/bin/gauntlet", root() + "/elsewhere").out, Not(HasSubstr("--preload")));
+}
+
 TEST_F(LauncherTest, TakesANewerLoaderOfTheMachine) {
   Release(1);
   Library("lib/libstdc++", 9999);

@@ -30,11 +30,6 @@ std::optional<Refusal> ReasonToRefuse(const proto::Hello& hello, const CampaignI
         fmt::format("this worker belongs to campaign '{}', this master serves ", Shorten(hello.campaign_id));
     return Refusal{fmt::format("{}campaign '{}'", theirs, identity.campaign_id), theirs + "another"};
   }
-  if (hello.software_version != identity.software_version) {
-    const std::string theirs =
-        fmt::format("this worker has software version {}, this master has ", Shorten(hello.software_version));
-    return Refusal{theirs + identity.software_version, theirs + "another"};
-  }
   if (const auto difference = proto::FirstDifference(identity.golden_hashes, hello.golden_hashes)) {
     if (!difference->offered) {
       return SameForAll(
