@@ -7,20 +7,27 @@
 #include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "base/split.h"
 #include "base/system/process_call.h"
 #include "cli/build_errors.h"
 
 namespace gauntlet {
 namespace {
 
-std::string Compiler() {
+// Its name, and what CXX says behind it.
+std::vector<std::string> Compiler() {
   const char* const named = std::getenv("CXX");
-  return named == nullptr || *named == '\0' ? "c++" : named;
+  std::vector<std::string> words = Split(named == nullptr ? "" : named, ' ');
+  std::erase(words, "");
+  if (words.empty()) words.emplace_back("c++");
+  return words;
 }
 
 // Of GCC, whose C++20 is too old before release 10; "" when it is not.
 std::string TooOld() {
-  const Result<CallOutput> told = CallProcess({Compiler(), "-dumpversion"}, "", {});
+  std::vector<std::string> call = Compiler();
+  call.emplace_back("-dumpversion");
+  const Result<CallOutput> told = CallProcess(call, "", {});
   if (!told || told->exit_code != 0) return "";
   const std::string release(told->out.substr(0, told->out.find_last_not_of('\n') + 1));
   const auto major = ParseNumber<int>(release.substr(0, release.find('.')));
@@ -28,7 +35,7 @@ std::string TooOld() {
   return fmt::format(
       ". {} is release {}, and g++ 10 or later is needed: name one by CXX (clusters often have one "
       "to load as a module), or build in Gauntlet's image (docs/bring-your-own-controller.md)",
-      Printable(Compiler()), Printable(release));
+      Printable(call.front()), Printable(release));
 }
 
 }  // namespace
@@ -36,7 +43,8 @@ std::string TooOld() {
 Status RunCompiler(std::vector<std::string> arguments, const std::string& what, std::ostream& said) {
   // Without any, as in some batch jobs, the compiler does not find its own parts.
   setenv("PATH", "/usr/local/bin:/usr/bin:/bin", /*overwrite=*/0);
-  arguments.insert(arguments.begin(), Compiler());
+  const std::vector<std::string> compiler = Compiler();
+  arguments.insert(arguments.begin(), compiler.begin(), compiler.end());
   const Result<CallOutput> done = CallProcess(arguments, "", {});
   if (!done && done.error().kind == ErrorKind::kNotFound)
     return InvalidInput(
@@ -50,8 +58,10 @@ Status RunCompiler(std::vector<std::string> arguments, const std::string& what, 
 }
 
 std::string CompilerCall(const std::vector<std::string>& arguments) {
-  std::string call = ShellQuoted(Compiler());
-  for (const std::string& argument : arguments) call += " " + ShellQuoted(argument);
+  std::string call;
+  for (const std::vector<std::string>& words : {Compiler(), arguments}) {
+    for (const std::string& word : words) call += (call.empty() ? "" : " ") + ShellQuoted(word);
+  }
   return call;
 }
 

@@ -86,6 +86,12 @@ int main(int argc, char** argv) {
   const std::size_t name_at = self.rfind('/') + 1;
   const std::string name = self.substr(name_at);
   const std::string root = self.substr(0, self.rfind('/', name_at < 2 ? 0 : name_at - 2));
+  if (root.find_first_of(":;") != root.npos) {
+    std::fprintf(stderr,
+                 "gauntlet: cannot start: %s: a path with ':' or ';' separates libraries; move the folder\n",
+                 root.c_str());
+    return 126;
+  }
   const std::string lib = root + "/lib";
   const std::string program = root + "/libexec/" + name;
   if (access(program.c_str(), X_OK) != 0) return Failed(program);

@@ -1,4 +1,6 @@
 // gauntlet build-controller: sources of controllers, written for ARGoS or for Gauntlet, become a plug-in.
+#include <unistd.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -118,13 +120,22 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
     sources.push_back(scratch.path() + "/table.cc");
     TRY(WriteOutputFile(sources.back(), table));
   }
-  TRY(std::vector<std::string> call, CallOf(options, std::move(sources)));
+  // What stands there is replaced by what can be used alone.
+  const fs::path output = fs::absolute(options.output);
+  BuildControllerOptions here = options;
+  here.output = scratch.path() + "/" + output.filename().string();
+  TRY(std::vector<std::string> call, CallOf(here, std::move(sources)));
   TRY(RunCompiler(std::move(call), "the plug-in", context.err));
-  const Result<std::string> usable = AddPluginFile(options.output);
-  if (usable) return Ok{};
+  const Result<std::string> usable = AddPluginFile(here.output);
+  if (!usable) return usable.error();
+  const fs::path beside = output.parent_path() / fmt::format(".{}.{}", output.filename().string(), getpid());
+  std::error_code error;
+  fs::copy_file(here.output, beside, error);
+  if (!error) fs::rename(beside, output, error);
+  if (!error) return Ok{};
   std::error_code ignored;
-  fs::remove(options.output, ignored);
-  return usable.error();
+  fs::remove(beside, ignored);
+  return InvalidInput(fmt::format("{}: cannot be written: {}", Printable(options.output), error.message()));
 }
 
 Result<ExitCode> RunBuildController(CommandContext& context, const BuildControllerOptions& options) {

@@ -121,7 +121,10 @@ TEST_F(BuildController, NamesWhatIsWrong) {
   ExpectRefusal({broken, "-o", library, "--argos", File("cut.argos", "<argos-configuration>")},
                 "cut.argos:1:");
   const std::string idle = File("idle.cpp", "int Idle() { return 1; }\n");
+  File("libbad.so", "an earlier one");
   ExpectRefusal({idle, "-o", library}, "it brings neither a controller nor a scenario");
+  EXPECT_EQ(fs::file_size(library), 14U) << "what was there stays";
+  fs::remove(library);
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
 }
 
@@ -136,6 +139,8 @@ TEST_F(BuildController, SaysWhichCompilerItNeeds) {
   fs::permissions(old, fs::perms::owner_all);
   setenv("CXX", old.c_str(), 1);
   ExpectRefusal({source, "-o", library}, "is release 8.5.0, and g++ 10 or later is needed");
+  setenv("CXX", "c++ -include /absent.h", 1);
+  ExpectRefusal({source, "-o", library}, "/absent.h");
   unsetenv("CXX");
 }
 
