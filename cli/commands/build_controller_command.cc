@@ -1,6 +1,4 @@
 // gauntlet build-controller: sources of controllers, written for ARGoS or for Gauntlet, become a plug-in.
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +15,7 @@
 #include "cli/compiler.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
+#include "controllers/rows/plugin_rows.h"
 #include "master/directory/plugins.h"
 #include "search/cases/argos_controllers.h"
 
@@ -121,21 +120,14 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
     TRY(WriteOutputFile(sources.back(), table));
   }
   // What stands there is replaced by what can be used alone.
-  const fs::path output = fs::absolute(options.output);
   BuildControllerOptions here = options;
-  here.output = scratch.path() + "/" + output.filename().string();
+  here.output = scratch.path() + "/" + fs::path(options.output).filename().string();
   TRY(std::vector<std::string> call, CallOf(here, std::move(sources)));
   TRY(RunCompiler(std::move(call), "the plug-in", context.err));
   const Result<std::string> usable = AddPluginFile(here.output);
   if (!usable) return usable.error();
-  const fs::path beside = output.parent_path() / fmt::format(".{}.{}", output.filename().string(), getpid());
-  std::error_code error;
-  fs::copy_file(here.output, beside, error);
-  if (!error) fs::rename(beside, output, error);
-  if (!error) return Ok{};
-  std::error_code ignored;
-  fs::remove(beside, ignored);
-  return InvalidInput(fmt::format("{}: cannot be written: {}", Printable(options.output), error.message()));
+  TRY(const std::string library, ReadSmallFile(here.output, controllers::kMaxPluginBytes));
+  return WriteOutputFile(options.output, library);
 }
 
 Result<ExitCode> RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
