@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,8 @@ struct EvaluationRequest {
   std::vector<IndividualId> parents = {};  // their runs tell how long this one's will take
   // That its runs have instead of the experiment's; nullptr = those. Only of a search over settings.
   std::shared_ptr<const sim::RunSettings> settings = nullptr;
+  // From which the seeds of its runs are derived instead of the experiment's; only of a stream.
+  std::optional<std::uint64_t> seed = {};
 };
 
 // What a run does beside what it is judged by.
@@ -105,6 +108,7 @@ struct SearchProgress {
 // told. They come from the stored runs; an error of reading them is passed on.
 using History = std::function<Status(const std::function<void(const EvaluationOutcome&)>& visit)>;
 
+class CaseStream;
 class FitRounds;
 class MarginStages;
 class RepairCourse;
@@ -133,6 +137,8 @@ class SearchAlgorithm {
   virtual const MarginStages* Margin() const { return nullptr; }
   // Of a search for a repair; else nullptr.
   virtual const RepairCourse* Repair() const { return nullptr; }
+  // Of a search to which cases are added; else nullptr.
+  virtual CaseStream* Stream() { return nullptr; }
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
   // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.

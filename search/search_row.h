@@ -52,10 +52,15 @@ struct SearchRow {
   // takes the experiment for that of all its runs takes such a search. Cases may be handed to it.
   bool varies_settings = false;
 
+  // Cases are added while it runs (CaseStream), each with settings of its own if it likes.
+  bool streamed = false;
+
   bool counts_contacts = false;  // of its runs (RunSpec::count_contacts)
 
   bool given_cases() const { return question != nullptr; }
   bool Related() const { return individuals == Individuals::kPopulation; }
+  // Its cases are handed to it before it begins.
+  bool handed_cases() const { return !streamed && (given_cases() || varies_settings); }
   bool Breeds() const { return Related() && !given_cases(); }
 };
 

@@ -93,7 +93,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
   if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
-  if (setup.row->given_cases() || setup.row->varies_settings) {
+  if (setup.row->handed_cases()) {
     identity +=
         fmt::format("list of cases = {} with hash {:016x}\n", setup.cases.size(), HashOf(setup.cases));
   }

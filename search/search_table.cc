@@ -17,6 +17,7 @@
 #include "search/fit/fit_search.h"
 #include "search/given/case_blame.h"
 #include "search/given/case_minimiser.h"
+#include "search/given/case_stream.h"
 #include "search/given/repeated_case.h"
 #include "search/margin/margin_search.h"
 #include "search/repair/repair_search.h"
@@ -33,7 +34,7 @@ std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
                                   MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow(),
-                                  MarginRow(),         RepairRow()};
+                                  MarginRow(),         RepairRow(),      StreamRow()};
   return rows;
 }
 
@@ -81,7 +82,8 @@ std::uint64_t RunSeed(const Experiment& experiment, const EvaluationRequest& eva
                       std::uint32_t replicate) {
   const SearchRow& row = RowOf(experiment);
   const std::uint64_t who = row.seeds_of_cases ? CaseHash(evaluation.test_case) : evaluation.individual;
-  return sim::DeriveSeed(experiment.seed, row.purpose, kSearchNumber, who, evaluation.evaluation, replicate);
+  const std::uint64_t seed = evaluation.seed.value_or(experiment.seed);
+  return sim::DeriveSeed(seed, row.purpose, kSearchNumber, who, evaluation.evaluation, replicate);
 }
 
 sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& evaluation,
@@ -103,6 +105,7 @@ Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_ca
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment,
                                                     std::vector<sim::TestCase> cases) {
   const SearchRow& row = RowOf(experiment);
+  if (row.streamed) return row.make(SetupOf(experiment, {}, std::move(cases)));
   if (row.given_cases()) {
     if (!cases.empty()) return row.make(SetupOf(experiment, {}, std::move(cases)));
     return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",

@@ -1,5 +1,6 @@
 // gauntlet evaluate, confirm, minimise, blame, check, compare-controllers: a command for each question about
 // cases.
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,6 +21,7 @@
 #include "cli/options/sweep.h"
 #include "cli/output/output_file.h"
 #include "cli/run_campaign.h"
+#include "cli/stream_run.h"
 #include "master/directory/campaign_directory.h"
 #include "study/questions/question_table.h"
 
@@ -33,6 +35,8 @@ using Kind = QuestionOption::Kind;
 struct QuestionOptions : LocalOptions {
   Question question;
   SweepOptions sweep;
+  bool from_stdin = false;
+  SlurmOptions slurm;
   std::string place;
   std::vector<std::string> cases;
   std::string other;                                       // a second experiment
@@ -42,13 +46,13 @@ struct QuestionOptions : LocalOptions {
 };
 
 // Settings of the experiments that a new campaign is of.
-Result<std::vector<ExtraSet>> ExtraOf(const QuestionOptions& options) {
+Result<std::vector<ExtraSet>> ExtraOf(const QuestionOptions& options, const char* search = "cases") {
   const Question& question = options.question;
   for (const ExtraSet& size : SetsOf(options.size)) {
     return InvalidInput(fmt::format("{} {}: '{}' searches nothing; the runs per case are --replicates K",
                                     size.option, size.value, question.name));
   }
-  std::vector<ExtraSet> extra = {{question.name, "search.algorithm", "cases"}};
+  std::vector<ExtraSet> extra = {{question.name, "search.algorithm", search}};
   for (const QuestionOption& option : question.options) {
     const auto given = options.values.find(option.name);
     if (*option.sets != '\0' && given != options.values.end() && !given->second.empty())
@@ -200,8 +204,22 @@ Result<ExitCode> Tell(CommandContext& context, const QuestionOptions& options, c
   return CodeOf(told.conclusion);
 }
 
+// The question as cases come line by line.
+Result<ExitCode> RunAsStream(CommandContext& context, const QuestionOptions& options) {
+  const auto given = [](const auto& named) { return !named.second.empty() && named.first != "--replicates"; };
+  if (options.dry_run || !options.sweep.sweeps.empty() || !options.sweep.seeds.empty() ||
+      std::ranges::any_of(options.values, given))
+    return InvalidInput(
+        "--stdin goes without --case, --from, --sweep, --seeds and --dry-run: lines say what is asked");
+  TRY(const std::vector<ExtraSet> extra, ExtraOf(options, "stream"));
+  return RunStream(context, options, options.slurm, extra);
+}
+
 Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& options) {
   const Place place = options.question.place;
+  if (options.from_stdin) return RunAsStream(context, options);
+  if (!options.slurm.settings.empty())
+    return InvalidInput("--slurm is for --stdin; other searches: 'submit'");
   TRY(const int workers, ParseWorkers(options.running.workers));
   TRY(const Asking asking, AskingOf(context, options));
   TRY(Call call, PlanCall(options.question, asking));
@@ -236,6 +254,13 @@ void AddPlace(CLI::App& command, const Question& question, QuestionOptions& opti
   if (question.place == Place::kNewCampaign) {
     AddLocalOptions(command, options, /*sizes=*/false);
     if (question.sweeps) AddSweepOptions(command, options.sweep, "random_faults.count=0,2,4");
+    if (question.streams) {
+      command.add_flag("--stdin", options.from_stdin,
+                       "cases come line by line on stdin instead, answers go to stdout; see below");
+      AddValue(
+          command, "--slurm", "KEY=VALUE", options.slurm.settings,
+          "with --stdin: workers are jobs of a Slurm cluster, as 'gauntlet submit' has them; repeatable");
+    }
     if (*question.other == '\0') return;
     command.add_option("OTHER", options.other, question.other);
     AddValue(command, "--set-b", "KEY=VALUE", options.other_sets,

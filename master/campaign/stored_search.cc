@@ -12,7 +12,7 @@ namespace gauntlet {
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store,
                                                           bool restored) {
   const SearchRow& row = RowOf(plan.experiment);
-  const bool handed = row.given_cases() || row.varies_settings;
+  const bool handed = row.handed_cases();
   if (!handed && (row.individuals != Individuals::kCases || !restored)) return MakeSearch(plan.experiment);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
   return MakeStoredSearch(plan, std::move(individuals));
@@ -21,7 +21,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan,
                                                           std::vector<Individual> individuals) {
   const SearchRow& row = RowOf(plan.experiment);
-  const bool handed = row.given_cases() || row.varies_settings;
+  const bool handed = row.handed_cases();
   if (!handed && row.individuals != Individuals::kCases) return MakeSearch(plan.experiment);
   if (row.given_cases() && individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
@@ -38,7 +38,10 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
 }
 
 bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search) {
-  if (RowOf(experiment).info.length.empty()) return stored.finished_with > 0;
+  const SearchRow& row = RowOf(experiment);
+  // Of a stream that has ended and gone on, the runs that came last count.
+  if (row.streamed) return stored.finished_with > 0 && stored.finished_with >= stored.last_run;
+  if (row.info.length.empty()) return stored.finished_with > 0;
   const auto runs_each = static_cast<std::uint64_t>(experiment.search.replicates);
   const RunId last = RunIdOf(stored.id, 1) - 1 + search.Progress().evaluations_planned * runs_each;
   return stored.finished_with > 0 && stored.finished_with >= last;

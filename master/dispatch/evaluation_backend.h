@@ -37,6 +37,7 @@ struct FinishedRun {
 
 struct WorkerStatistics {
   int connected = 0;
+  int slots = 0;  // of those connected: runs that they take at once
   int busy = 0;
   int quarantined = 0;              // of those connected: get no runs any more
   int lost = 0;                     // since the start
@@ -122,6 +123,8 @@ class EvaluationBackend {
   // Waits up to `timeout` for something to happen; returns what has finished since the last call. Error: no
   // worker can be had.
   virtual Result<std::vector<FinishedRun>> Poll(std::chrono::milliseconds timeout) = 0;
+  // Poll also returns while `fd` is readable; -1: no more.
+  virtual void WatchInput(int /*fd*/) {}
   // These runs are stored durably: workers may forget them.
   virtual void Acknowledge(const std::vector<RunId>& runs) = 0;
   // Lets workers go; returns when they are gone or the deadline has passed.

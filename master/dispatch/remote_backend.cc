@@ -81,7 +81,8 @@ Result<std::vector<FinishedRun>> RemoteBackend::Poll(milliseconds timeout) {
     if (now >= deadline) break;
     const WaitOutcome outcome = WaitForSomething(std::min(RoundUp(deadline - now), kLongestWait), true);
     const std::vector<int>& ready = outcome.ready_fds;
-    const bool news = watched_fd_ >= 0 && std::find(ready.begin(), ready.end(), watched_fd_) != ready.end();
+    const bool news = std::ranges::any_of(
+        watched_fds_, [&ready](int fd) { return fd >= 0 && std::ranges::find(ready, fd) != ready.end(); });
     if (outcome.woken || news) break;
   }
   return std::exchange(finished_, {});
@@ -384,7 +385,9 @@ void RemoteBackend::SendHeartbeats(TimePoint now) {
 WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
   ProcessWatch& processes = workers_.processes();
   wait_fds_.clear();
-  if (watch && watched_fd_ >= 0) wait_fds_.push_back(watched_fd_);
+  for (const int fd : watched_fds_) {
+    if (watch && fd >= 0) wait_fds_.push_back(fd);
+  }
   if (processes.fd() >= 0) wait_fds_.push_back(processes.fd());
   const std::size_t others = wait_fds_.size();
   if (pool_ != nullptr) pool_->AppendWaitFds(wait_fds_);

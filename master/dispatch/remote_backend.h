@@ -2,6 +2,7 @@
 // master keeps its own workers, a WorkerPool.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -26,7 +27,8 @@ class RemoteBackend final : public EvaluationBackend {
                 const Clock& clock, WorkerPool* pool = nullptr);
 
   // Poll returns early while `fd` is readable; -1 watches nothing.
-  void WatchFd(int fd) { watched_fd_ = fd; }
+  void WatchFd(int fd) { watched_fds_[0] = fd; }
+  void WatchInput(int fd) override { watched_fds_[1] = fd; }
 
   void Submit(std::vector<RunRequest> runs) override;
   Result<std::vector<FinishedRun>> Poll(std::chrono::milliseconds timeout) override;
@@ -66,7 +68,7 @@ class RemoteBackend final : public EvaluationBackend {
   Transport& transport_;
   const Clock& clock_;
   WorkerPool* pool_;
-  int watched_fd_ = -1;
+  std::array<int, 2> watched_fds_ = {-1, -1};
 
   Scheduler scheduler_;
   WorkerConnections workers_;

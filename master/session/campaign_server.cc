@@ -168,23 +168,24 @@ Status CampaignServer::RestoreSearches() {
   dispatch_.reproducible = observed.state;
   backend_ = std::make_unique<RemoteBackend>(identity_, dispatch_, *transport_, clock_, pool_.get());
   backend_->WatchFd(campaign_.store->CommitNotifier());
-  SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_};
+  SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_, options_.feed};
   for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Experiment& experiment = plans_[i].experiment;
-    drivers_.emplace_back(
-        SearchDriver::Parts{.plan = plans_[i],
-                            .search = *searches_[i],
-                            .backend = *backend_,
-                            .store = *campaign_.store,
-                            .on_run = [this, &experiment](const StoredRun& run, const FinishedRun& finished) {
-                              KeepBundle(experiment, run, finished);
-                            }});
+    drivers_.emplace_back(SearchDriver::Parts{
+        .plan = plans_[i],
+        .search = *searches_[i],
+        .backend = *backend_,
+        .store = *campaign_.store,
+        .on_run = [this, &experiment](const StoredRun& run,
+                                      const FinishedRun& finished) { KeepBundle(experiment, run, finished); },
+        .feed = options_.feed});
     parts.searches.push_back(&drivers_.back());
   }
   loop_.emplace(parts);
   TRY(loop_->Restore());
   runs_before_ = loop_->runs_done();
-  return Ok{};
+  if (options_.feed == nullptr) return Ok{};
+  return options_.feed->Begin(plans_.front().id, *searches_.front()->Stream(), *campaign_.store);
 }
 
 // Into the campaign's events, and to who has started this master.
@@ -271,7 +272,9 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
   report.runs_this_session = loop_->runs_done() - runs_before_;
   report.wall_seconds = std::chrono::duration<double>(clock_.Now() - started_).count();
   report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before_;
-  TRY(report.summary, Summarise(plans_, *campaign_.store));
+  // Of a stream nobody here needs to know every case.
+  TRY(report.summary, options_.feed == nullptr ? Summarise(plans_, *campaign_.store)
+                                               : SummariseTotals(plans_, *campaign_.store));
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/regular_file.h"
@@ -201,11 +202,17 @@ class Campaigns final : public CampaignService {
         TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence,
                      options.stop_requested));
     TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
+    if (RowOf(plans.front().experiment).streamed && options.feed == nullptr) {
+      return InvalidInput(fmt::format(
+          "{} is {}: it goes on by the command that began it, gauntlet evaluate ... --stdin --dir {}", dir,
+          RowOf(plans.front().experiment).title, PastedPath(dir)));
+    }
     TRY(const proto::GoldenHashes golden_hashes, CheckGoldenHashes(campaign.store->meta()));
     TRY(CheckPlugins(campaign.directory.plugins_path(), plans));
     TRY(CheckStored(plans, *campaign.store));
     TRY(const CampaignSummary totals, SummariseTotals(plans, *campaign.store));
-    if (!totals.finished) return CampaignServer(campaign, plans, golden_hashes, options).Serve();
+    if (!totals.finished || options.feed != nullptr)
+      return CampaignServer(campaign, plans, golden_hashes, options).Serve();
     TRY(CampaignSummary summary, Summarise(plans, *campaign.store));
     return SessionReport{.summary = std::move(summary)};
   }

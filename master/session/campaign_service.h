@@ -16,6 +16,7 @@
 
 namespace gauntlet {
 
+class EvaluationFeed;
 class MetricsPage;
 
 // What a master says of itself once workers can reach it.
@@ -35,6 +36,7 @@ struct SessionOptions {
   bool insecure =
       false;  // in plaintext, open to whoever gets there; otherwise encrypted, for known keys only
   double audit_share = 0.0;        // of runs, 0 to 1, that a second worker simulates too, to be compared
+  EvaluationFeed* feed = nullptr;  // of a campaign that is a stream of cases; nullptr of others
   MetricsPage* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
   // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
@@ -71,7 +73,8 @@ class CampaignService {
   // WithLength.
   virtual Result<std::string> Extend(const std::string& dir, const std::vector<std::string>& sets,
                                      const std::function<bool()>& give_up) = 0;
-  // Goes on where the campaign was; a finished one is only summarised.
+  // Goes on where the campaign was; a finished one is only summarised, unless it is a stream, which goes on
+  // with a feed and not without one.
   virtual Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) = 0;
 
   // Checks and summarises what is stored, but for specs and results in full (Resume checks them too).

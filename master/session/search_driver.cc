@@ -84,6 +84,7 @@ Status SearchDriver::Ask() {
       }
     }
     evaluation.request = std::move(request);
+    Answer(evaluation);
     pending_.push_back(std::move(evaluation));
   }
   at_backend_ += submissions.size();
@@ -91,14 +92,26 @@ Status SearchDriver::Ask() {
   return Ok{};
 }
 
-SearchDriver::PendingRun* SearchDriver::Find(RunId id) {
+// An evaluation may be told much later, in its turn.
+void SearchDriver::Answer(const PendingEvaluation& evaluation) const {
+  if (parts_.feed == nullptr || !std::ranges::all_of(evaluation.runs, std::mem_fn(&PendingRun::durable)))
+    return;
+  std::vector<const StoredRun*> runs;
+  for (const PendingRun& pending : evaluation.runs) runs.push_back(&pending.run);
+  parts_.feed->Answer(evaluation.request, runs);
+}
+
+SearchDriver::PendingEvaluation* SearchDriver::FindEvaluation(RunId id) {
   // Runs of pending evaluations are numbered without gaps, each evaluation holding `replicates` of them.
   const auto holder = std::partition_point(
       pending_.begin(), pending_.end(),
       [id](const PendingEvaluation& evaluation) { return evaluation.runs.back().run.id < id; });
-  if (holder == pending_.end()) return nullptr;
-  const RunId first = holder->runs.front().run.id;
-  return id < first ? nullptr : &holder->runs[id - first];
+  return holder == pending_.end() || id < holder->runs.front().run.id ? nullptr : &*holder;
+}
+
+SearchDriver::PendingRun* SearchDriver::Find(RunId id) {
+  PendingEvaluation* holder = FindEvaluation(id);
+  return holder == nullptr ? nullptr : &holder->runs[id - holder->runs.front().run.id];
 }
 
 void SearchDriver::Store(FinishedRun finished) {
@@ -133,6 +146,7 @@ void SearchDriver::Committed(RunId id) {
   GAUNTLET_CHECK(pending != nullptr, fmt::format("run {} was committed but never asked for", id));
   pending->durable = true;
   totals_.Count(pending->run);
+  Answer(*FindEvaluation(id));
 }
 
 void SearchDriver::TellCompleted() {
@@ -188,10 +202,13 @@ Status SearchDriver::Advance() {
   TellCompleted();
   TRY(Ask());
   TellCompleted();  // what a former session had stored may complete evaluations at once
+  // A stream may learn that it has ended when all is told.
+  if (finished() && saved_until_ < last_told_) SaveState();
   return Ok{};
 }
 
 std::uint64_t SearchDriver::runs_planned() const {
+  if (parts_.search.Stream() != nullptr) return last_asked_ - (RunIdOf(id(), 1) - 1);
   return parts_.search.Progress().evaluations_planned *
          static_cast<std::uint64_t>(parts_.plan.experiment.search.replicates);
 }

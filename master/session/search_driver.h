@@ -13,6 +13,7 @@
 #include "master/campaign/state_digest.h"
 #include "master/directory/search_plans.h"
 #include "master/dispatch/evaluation_backend.h"
+#include "master/session/evaluation_feed.h"
 #include "master/store/result_store.h"
 #include "master/store/run_numbers.h"
 #include "search/search_algorithm.h"
@@ -28,6 +29,7 @@ class SearchDriver {
     ResultStore& store;
     // A run that has come back, before it is stored; it still has its spec.
     std::function<void(const StoredRun&, const FinishedRun&)> on_run = {};
+    EvaluationFeed* feed = nullptr;  // told of evaluations whose runs are all durable; may be nullptr
   };
   explicit SearchDriver(const Parts& parts);
 
@@ -76,9 +78,12 @@ class SearchDriver {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   Status Ask();
+  void Answer(const PendingEvaluation& evaluation) const;
   // Ticks that the individual's runs took so far, or its parents'; 0 = unknown.
   double PredictedLength(const EvaluationRequest& request) const;
   void SaveState();
+  // The evaluation that holds it; nullptr when none does.
+  PendingEvaluation* FindEvaluation(RunId id);
   PendingRun* Find(RunId id);
 
   Parts parts_;

@@ -17,6 +17,9 @@ constexpr std::size_t kRunsAheadOfAWorker = 8;
 constexpr std::chrono::milliseconds kCommitSoon{20};
 // A search waits at the end of each generation for its slowest run; others fill the gap.
 constexpr std::size_t kSearchesAtOnce = 64;
+// Cases of a stream that may be open.
+constexpr std::size_t kOpenForASlot = 16;
+constexpr std::size_t kLeastOpen = 64;
 
 }  // namespace
 
@@ -41,7 +44,8 @@ Status SearchLoop::Advance() {
   }
   for (SearchDriver* search : running_) {
     TRY(search->Advance());
-    if (search->finished()) parts_.store.MarkFinished(search->id(), search->last_told());
+    if (search->finished() && search->totals().runs > 0)
+      parts_.store.MarkFinished(search->id(), search->last_told());
   }
   const std::size_t before = running_.size();
   std::erase_if(running_, std::mem_fn(&SearchDriver::finished));
@@ -126,7 +130,18 @@ Status SearchLoop::EndSession() {
   TRY(parts_.store.Flush());
   TRY(ApplyCommits());
   for (SearchDriver* search : running_) search->TellCompleted();
+  if (parts_.feed != nullptr) (void)parts_.feed->Turn(0);  // the answers that are there
   return parts_.store.Flush();
+}
+
+Status SearchLoop::TurnFeed() {
+  if (parts_.feed == nullptr) return Ok{};
+  const auto slots = static_cast<std::size_t>(parts_.backend.Statistics().slots);
+  Status turned = parts_.feed->Turn(std::max(kLeastOpen, kOpenForASlot * slots));
+  parts_.backend.WatchInput(parts_.feed->fd());
+  if (turned) return Ok{};
+  TRY(parts_.store.Flush());
+  return turned;
 }
 
 Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
@@ -134,21 +149,25 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
   TimePoint last_report = parts_.clock.Now() - kPollTime;
   while (true) {
     TRY(ApplyCommits());
+    TRY(TurnFeed());
     TRY(Advance());
     if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
       on_progress(Progress());
       last_report = now;
     }
     const bool searched = running_.empty();
-    if (searched && parts_.backend.Statistics().audits_open == 0) break;
+    const bool drained = parts_.feed == nullptr || parts_.feed->Drained();
+    if (searched && drained && parts_.backend.Statistics().audits_open == 0) break;
     const StopWish wish = stop();
     if (wish == StopWish::kAfterRuns) parts_.backend.StopLeasing();
     if (wish == StopWish::kNow || (wish == StopWish::kAfterRuns && parts_.backend.Statistics().busy == 0)) {
       TRY(EndSession());
       return searched ? CampaignEnd::kFinished : CampaignEnd::kStopped;
     }
-    if (!searched && std::ranges::none_of(running_, &SearchDriver::pending)) continue;
-    Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(kPollTime);
+    const bool waits = parts_.feed != nullptr || searched;
+    if (!waits && std::ranges::none_of(running_, &SearchDriver::pending)) continue;
+    const auto patience = parts_.feed == nullptr ? kPollTime : std::min(kPollTime, parts_.feed->patience());
+    Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(patience);
     if (!finished) {
       TRY(parts_.store.Flush());
       return finished.error();

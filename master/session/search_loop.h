@@ -29,15 +29,16 @@ class SearchLoop {
     EvaluationBackend& backend;
     ResultStore& store;
     const Clock& clock;
+    EvaluationFeed* feed = nullptr;  // of the only search, a stream; else nullptr
   };
   explicit SearchLoop(const Parts& parts) : parts_(parts) {}
 
   // Call once, before Run: restores all searches.
   Status Restore();
 
-  // Until all searches have finished and the backend's audits are done, `stop` answers kNow, or it has
-  // answered kAfterRuns and what was running has ended. `on_progress` is called about five times a second.
-  // Error: the store or the backend failed; whatever was acknowledged is stored.
+  // Until all searches have finished, the feed is drained and the backend's audits are done, `stop` answers
+  // kNow, or it has answered kAfterRuns and what was running has ended. `on_progress` is called about five
+  // times a second. Error: the store or the backend failed; whatever was acknowledged is stored.
   Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 
@@ -52,6 +53,8 @@ class SearchLoop {
   Status ApplyCommits();
   void StoreResults(std::vector<FinishedRun> finished);
   Status EndSession();
+  // Of a stream: lets the feed add cases and hand out answers, and has the backend wait for more of them.
+  Status TurnFeed();
   CampaignProgress Progress();
 
   Parts parts_;

@@ -27,6 +27,7 @@ struct StoredSearch {
   // The last run that it had when it came to its end; 0 = it has not. A search that was made longer since
   // comes to its end once more, with a later run.
   RunId finished_with = 0;
+  RunId last_run = 0;  // that is stored; known to those who load it
 };
 
 // A run with what came of it. The outcome is a copy of a few fields of the result, so that rows can be
@@ -64,6 +65,16 @@ struct SearchTotals {
   }
 };
 
+// A line that a stream of cases was asked by (study/streams/evaluation_line.h).
+struct StoredLine {
+  SearchId search = 0;
+  IndividualId individual = 0;  // the case's
+  std::string name;             // by which it can be asked for again; "" = it cannot
+  std::string content;          // what it asks for, but for the case itself
+  RunId first_run = 0;
+  std::uint32_t runs = 1;
+};
+
 struct SavedState {
   SearchId search = 0;
   std::uint32_t generation = 0;
@@ -94,6 +105,7 @@ class ResultStore {
   // Appending; durable once Committed() has reported the run, or Flush() has returned without error.
   virtual void AddSearch(const StoredSearch& search) = 0;
   virtual void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) = 0;
+  virtual void AddLine(const StoredLine& line) = 0;
   virtual void AddRun(StoredRun run) = 0;
   virtual void SaveState(const SavedState& state) = 0;
   // The search has come to its end with this run.
@@ -116,7 +128,10 @@ class ResultStore {
   virtual Result<std::vector<SearchTotals>> LoadTotals() = 0;
   // What is known from birth: id, parents, birth_generation, test_case; in id order. The rest follows from
   // the runs.
-  virtual Result<std::vector<Individual>> LoadIndividuals(SearchId search) = 0;
+  virtual Result<std::vector<Individual>> LoadIndividuals(SearchId search, IndividualId after = 0) = 0;
+  // Those of the individuals behind `after`, in their order.
+  virtual Result<std::vector<StoredLine>> LoadLines(SearchId search, IndividualId after) = 0;
+  virtual Result<std::optional<StoredLine>> FindLine(SearchId search, const std::string& name) = 0;
   virtual Result<std::optional<SavedState>> LoadNewestState(SearchId search) = 0;
   // Runs of a search with id > after, in id order. Error: that of a visit, which is the last one then, or
   // kCorrupt, naming the first run that was changed.

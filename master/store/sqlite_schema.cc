@@ -56,6 +56,17 @@ CREATE TABLE individuals (
   checksum         INTEGER NOT NULL,
   PRIMARY KEY (search, id)
 ) STRICT, WITHOUT ROWID;
+CREATE TABLE lines (
+  search     INTEGER NOT NULL REFERENCES searches (id),
+  individual INTEGER NOT NULL,
+  name       TEXT,
+  content    TEXT NOT NULL,
+  first_run  INTEGER NOT NULL,
+  runs       INTEGER NOT NULL,
+  checksum   INTEGER NOT NULL,
+  PRIMARY KEY (search, individual),
+  UNIQUE (search, name)
+) STRICT, WITHOUT ROWID;
 CREATE TABLE runs (
   id            INTEGER PRIMARY KEY,
   search        INTEGER NOT NULL REFERENCES searches (id),
@@ -116,8 +127,8 @@ CREATE TABLE totals (
 ) STRICT;
 )sql";
 
-constexpr std::array kTableNames = {"meta",    "searches", "finished", "individuals", "runs",
-                                    "records", "examples", "states",   "events"};
+constexpr std::array kTableNames = {"meta", "searches", "finished", "individuals", "lines",
+                                    "runs", "records",  "examples", "states",      "events"};
 
 // What was stored is never rewritten, not even by a defect of ours. (The totals are, with every commit.)
 std::string InsertOnlyTriggers() {

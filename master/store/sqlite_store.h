@@ -69,6 +69,7 @@ class SqliteStore final : public ResultStore {
   void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) override {
     if (!individuals.empty()) Add(Newborns{search, individuals});
   }
+  void AddLine(const StoredLine& line) override { Add(line); }
   void AddRun(StoredRun run) override { Add(std::move(run)); }
   void SaveState(const SavedState& state) override { Add(state); }
   void MarkFinished(SearchId search, RunId last_run) override { Add(Finished{search, last_run}); }
@@ -82,8 +83,14 @@ class SqliteStore final : public ResultStore {
 
   Result<std::vector<StoredSearch>> LoadSearches() override { return Tables()->LoadSearches(); }
   Result<std::vector<SearchTotals>> LoadTotals() override { return Tables()->LoadTotals(); }
-  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override {
-    return Tables()->LoadIndividuals(search);
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search, IndividualId after = 0) override {
+    return Tables()->LoadIndividuals(search, after);
+  }
+  Result<std::vector<StoredLine>> LoadLines(SearchId search, IndividualId after) override {
+    return Tables()->lines().Load(search, after);
+  }
+  Result<std::optional<StoredLine>> FindLine(SearchId search, const std::string& name) override {
+    return Tables()->lines().Find(search, name);
   }
   Result<std::optional<SavedState>> LoadNewestState(SearchId search) override {
     return Tables()->LoadNewestState(search);
@@ -99,7 +106,8 @@ class SqliteStore final : public ResultStore {
   Result<std::vector<StoredEvent>> LoadEvents() override { return Tables()->LoadEvents(); }
 
  private:
-  using Record = std::variant<StoredSearch, Newborns, StoredRun, SavedState, Finished, StoredEvent>;
+  using Record =
+      std::variant<StoredSearch, Newborns, StoredLine, StoredRun, SavedState, Finished, StoredEvent>;
   using Group = std::vector<Record>;
 
   // The tables and, as long as this lives, database_mutex_.

@@ -130,6 +130,12 @@ std::uint64_t ChecksumOf(const StoredRun& run, std::uint64_t record_hash) {
                      run.attempt, record_hash);
 }
 
+// The ids of a search's runs stand together, behind the first number and up to the second: that is the index.
+std::pair<RunId, RunId> RunsOf(SearchId search) {
+  const RunId before_first = RunIdOf(search, 1) - 1;
+  return {before_first, before_first + (1ULL << kSequenceBits) - 1};
+}
+
 Error DamagedDatabase(const std::string& what) {
   return {ErrorKind::kCorrupt, "the campaign's database was changed or is damaged: " + what};
 }
@@ -289,10 +295,17 @@ Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
       connection_->Prepare(
           "SELECT id, name, algorithm, seed, coalesce((SELECT max(last_run) FROM finished WHERE search = "
           "searches.id), 0) FROM searches ORDER BY id"));
+  TRY(SqliteStatement last,
+      connection_->Prepare("SELECT coalesce(max(id), 0) FROM runs WHERE id > ? AND id <= ?"));
   std::vector<StoredSearch> searches;
   TRY(query.ForEachRow([&]() -> Status {
     StoredSearch& search = searches.emplace_back();
     query.Read(search.id, search.name, search.algorithm, search.seed, search.finished_with);
+    const auto [before, end] = RunsOf(search.id);
+    last.Bind(before, end);
+    TRY(const bool row, last.Step());
+    if (row) last.Read(search.last_run);
+    last.Reset();
     return Ok{};
   }));
   return searches;
@@ -306,13 +319,13 @@ Result<std::vector<SearchTotals>> SqliteTables::LoadTotals() {
   return all;
 }
 
-Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
+Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search, IndividualId after) {
   TRY(SqliteStatement query, connection_->Prepare("SELECT id, birth_generation, parents, test_case, checksum "
-                                                  "FROM individuals WHERE search = ? ORDER BY "
+                                                  "FROM individuals WHERE search = ? AND id > ? ORDER BY "
                                                   "id"));
-  query.Bind(search);
+  query.Bind(search, after);
   std::vector<Individual> individuals;
-  if (const auto totals = totals_.all().find(search); totals != totals_.all().end())
+  if (const auto totals = totals_.all().find(search); after == 0 && totals != totals_.all().end())
     individuals.reserve(totals->second.individuals);
   std::string parents;
   std::string test_case;
@@ -394,9 +407,7 @@ Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) 
 }
 
 Status SqliteTables::ForEach(SearchId search, RunId after, bool whole, const RunVisitor& visit) {
-  // The ids of a search's runs stand together: that is the index.
-  const RunId before_first = RunIdOf(search, 1) - 1;
-  const RunId last = before_first + (1ULL << kSequenceBits) - 1;
+  const auto [before_first, last] = RunsOf(search);
   TRY(SqliteStatement query, connection_->Prepare(fmt::format(
                                  "SELECT {}{} FROM {} WHERE id > ? AND id <= ? ORDER BY id", kRunColumns,
                                  whole ? ", records.spec, records.result" : "", whole ? kWholeRuns : kRuns)));

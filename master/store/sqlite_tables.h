@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/store/line_table.h"
 #include "master/store/packing.h"
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
@@ -40,6 +41,7 @@ class SqliteTables {
 
   Status Insert(const StoredSearch& search);
   Status Insert(const Newborns& newborns);
+  Status Insert(const StoredLine& line) { return lines_.Insert(line); }
   Status Insert(const StoredRun& run);
   Status Insert(const SavedState& state);
   Status Insert(const StoredEvent& event);
@@ -52,7 +54,8 @@ class SqliteTables {
 
   Result<std::vector<StoredSearch>> LoadSearches();
   Result<std::vector<SearchTotals>> LoadTotals();
-  Result<std::vector<Individual>> LoadIndividuals(SearchId search);
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search, IndividualId after);
+  LineTable& lines() { return lines_; }
   Result<std::optional<SavedState>> LoadNewestState(SearchId search);
   Status ForEachRun(SearchId search, RunId after, const RunVisitor& visit);
   Status ForEachRow(SearchId search, RunId after, const RunVisitor& visit);
@@ -61,7 +64,7 @@ class SqliteTables {
 
  private:
   SqliteTables(SqliteConnection& connection, TotalsTable totals)
-      : connection_(&connection), totals_(std::move(totals)) {}
+      : connection_(&connection), totals_(std::move(totals)), lines_(connection) {}
   Status LoadExamples();
   // The first of its kind becomes what later ones are packed with.
   Status Learn(Packing& packing, const char* kind, std::string_view example);
@@ -74,6 +77,7 @@ class SqliteTables {
 
   SqliteConnection* connection_;
   TotalsTable totals_;
+  LineTable lines_;
   Packing specs_;
   Packing results_;
   SqliteStatement insert_search_;

@@ -51,7 +51,7 @@ std::vector<NextCommand> NextCommandsOf(const CampaignSummary& summary, const Ca
   };
   std::vector<NextCommand> commands;
   const SearchRow* row = FindSearch(summary.searches.front().search);
-  const bool varies_settings = row != nullptr && row->varies_settings;
+  const bool varies_settings = row != nullptr && row->varies_settings && !row->streamed;
   if (varies_settings) commands.push_back({begin(std::string(row->command).c_str()), "what it has found"});
   const Confirmation* toughest = ToughestOf(answers.confirmations);
   if (const auto shown = ShowToughest(summary, begin); shown && toughest == nullptr)

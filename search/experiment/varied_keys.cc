@@ -46,16 +46,6 @@ Error Wrong(const std::string& text, const std::string& what) {
   return InvalidInput(fmt::format("--vary {}: {}", text, what));
 }
 
-std::optional<std::string> WhyNot(const Key& key) {
-  for (const std::string_view of_searches : {"search.", "fit.", "margin.", "repair."}) {
-    if (key.path.starts_with(of_searches)) return "says how is searched";
-  }
-  if (key.type == KeyType::kSeed) return "gives every run its seed";
-  if (key.for_people) return "has no influence on a run";
-  if (key.type == KeyType::kText) return "is a text";
-  return std::nullopt;
-}
-
 Result<VariedKey> RangeOf(const std::string& text, VariedKey varied, std::string_view range) {
   if (range.ends_with(kLog)) {
     varied.log = true;
@@ -94,6 +84,16 @@ Result<VariedKey> ListOf(const std::string& text, VariedKey varied, const std::s
 }
 
 }  // namespace
+
+std::optional<std::string> WhyItCannotVary(const Key& key) {
+  for (const std::string_view of_searches : {"search.", "fit.", "margin.", "repair."}) {
+    if (key.path.starts_with(of_searches)) return "says how is searched";
+  }
+  if (key.type == KeyType::kSeed) return "gives every run its seed";
+  if (key.for_people) return "has no influence on a run";
+  if (key.type == KeyType::kText) return "is a text";
+  return std::nullopt;
+}
 
 KeyValue VariedKey::ValueAt(double place) const {
   if (listed()) {
@@ -147,7 +147,7 @@ Result<std::vector<VariedKey>> ParseVariedKeys(const std::vector<std::string>& t
     const std::string rest = text.substr(equals + 1);
     const auto key = std::ranges::find(keys, path, &Key::path);
     if (key == keys.end()) return Wrong(text, UnknownName("key", path, keys));
-    if (const auto reason = WhyNot(*key)) return Wrong(text, fmt::format("{} {}", path, *reason));
+    if (const auto reason = WhyItCannotVary(*key)) return Wrong(text, fmt::format("{} {}", path, *reason));
     if (!known.insert(path).second) return Wrong(text, path + " varies twice");
     VariedKey one{.key = *key, .step = OnGrid(path) ? experiment.genome.step : 0.0};
     const bool is_number = key->type == KeyType::kNumber || key->type == KeyType::kInteger;

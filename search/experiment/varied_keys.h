@@ -1,6 +1,7 @@
 // What varies in a search over settings: keys of an experiment, and the range or the values of each.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,10 @@ struct VariedKey {
   // "controller_parameters.turn_rate=0.5..2:log", "physics=impulse|box2d".
   std::string ToText() const;
 };
+
+// Why runs of one campaign cannot have different values of the key, behind its name: "gives every run its
+// seed". Nothing: they can.
+std::optional<std::string> WhyItCannotVary(const Key& key);
 
 // Each text is KEY=LOW..HIGH, the same with ":log" behind it, or KEY=A|B|C. `keys`: of the experiment, those
 // of its scenario and controller among them. Numbers may begin with their point (".1"). Error: not of this

@@ -6,11 +6,13 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
 #include "controllers/registry.h"
 #include "master/campaign/stored_check.h"
+#include "master/campaign/verdict_text.h"
 #include "master/directory/campaign_ownership.h"
 #include "proto/run_codec.h"
 #include "search/given/given_search.h"
@@ -195,6 +197,25 @@ analysis::Interval FailureInterval(const FailureTally& tally) {
   if (tally.runs() == 0) return {0.0, 1.0};
   return analysis::WilsonInterval(static_cast<std::uint32_t>(tally.failures),
                                   static_cast<std::uint32_t>(tally.runs()), analysis::kConfidence);
+}
+
+Table TableOf(std::span<const CaseRun> runs) {
+  Table table({ForPrograms("id"), ForPrograms("seed"), ForPrograms("fitness"), ForPrograms("verdict"),
+               ForPrograms("metrics"), ForPrograms("failure"), ForPrograms("hash"), ForPrograms("message?")});
+  for (const CaseRun& run : runs) {
+    const sim::RunResult& result = run.result;
+    const bool completed = result.verdict == sim::Verdict::kCompleted;
+    nlohmann::ordered_json metrics = nlohmann::ordered_json::object();
+    for (const auto& [name, value] : result.metrics) metrics[name] = JsonValue(NumberValue(value));
+    table.AddRow({run.id, fmt::format("{}", run.seed), completed ? Cell(result.fitness) : Cell(),
+                  NameOf(result.verdict), JsonCell(std::move(metrics)),
+                  JsonCell({{"total", result.failure.total},
+                            {"type", result.failure.type >= 0 ? nlohmann::ordered_json(result.failure.type)
+                                                              : nlohmann::ordered_json()},
+                            {"label", result.failure.label}}),
+                  fmt::format("{:016x}", result.hash), completed ? TextCell("") : Cell(result.message)});
+  }
+  return table;
 }
 
 }  // namespace gauntlet

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/statistics/interval.h"
+#include "analysis/tables/table.h"
 #include "base/result.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
@@ -72,6 +74,9 @@ Result<std::vector<CaseAnswer>> AnswersOfCall(const std::string& directory, Case
 Result<std::vector<CaseAnswer>> AnswersOfCalls(const std::string& folder, CaseKey key);
 // Of those that are decided, each key once: what stands on most runs, of these the first.
 std::vector<CaseAnswer> BestOf(std::vector<CaseAnswer> answers);
+
+// What became of each run, for programs.
+Table TableOf(std::span<const CaseRun> runs);
 
 // "5 of 6": how many runs failed.
 std::string OutOf(const FailureTally& tally);

@@ -143,24 +143,6 @@ Result<Call> PlanEvaluation(const Asking& asking) {
   return CasesOfFiles(asking);
 }
 
-Table RunsOf(const CaseAnswer& answer) {
-  Table table({ForPrograms("id"), ForPrograms("seed"), ForPrograms("fitness"), ForPrograms("verdict"),
-               ForPrograms("metrics"), ForPrograms("failure"), ForPrograms("hash"), ForPrograms("message?")});
-  for (const CaseRun& run : answer.runs) {
-    const sim::RunResult& result = run.result;
-    const bool completed = result.verdict == sim::Verdict::kCompleted;
-    Json metrics = Json::object();
-    for (const auto& [name, value] : result.metrics) metrics[name] = JsonValue(NumberValue(value));
-    table.AddRow({run.id, fmt::format("{}", run.seed), completed ? Cell(result.fitness) : Cell(),
-                  NameOf(result.verdict), JsonCell(std::move(metrics)),
-                  JsonCell({{"total", result.failure.total},
-                            {"type", result.failure.type >= 0 ? Json(result.failure.type) : Json()},
-                            {"label", result.failure.label}}),
-                  fmt::format("{:016x}", result.hash), completed ? TextCell("") : Cell(result.message)});
-  }
-  return table;
-}
-
 // A case whose runs were told.
 struct Evaluation {
   double fitness_sum = 0.0;  // of the completed runs
@@ -296,7 +278,7 @@ Result<Told> TellEvaluation(const Asking& asking, const Call& call, std::span<co
     const bool simulated = !one.runs.empty();
     table.AddRow({settings, one.name, FitnessCell(evaluation.Mean()), Cell("", TextValue(one.refused_rule)),
                   Cell("", TextValue(one.refused)),
-                  JsonCell(RunsOf(one).ToJson(), simulated ? FormatCount(one.runs.size()) : "-"),
+                  JsonCell(TableOf(one.runs).ToJson(), simulated ? FormatCount(one.runs.size()) : "-"),
                   simulated ? CountCell(evaluation.failures) : Cell(),
                   simulated ? Cell(proto::RunText(one.runs.front().id), one.runs.front().id) : Cell(),
                   RemarkOn(one, evaluation)});
@@ -340,6 +322,11 @@ each other. Seeds are fresh: no run of a search has them. What comes of it is a 
 'show' and 'replay' work; it has one search for each search that the cases come from, and 'compare' knows
 that the members of one evolution's population are relatives.
 
+With --stdin cases come line by line, as JSON objects {"id", "case" or "file", "set", "seed", "replicates"}, and
+each is answered by a line on stdout once its runs are stored: for searches of other programs, of which
+clients/python has a client. All of them are one campaign. The same command with --dir goes on with it; answers
+that were given are given again by their ids. Messages go to stderr. The page is docs/evaluate-stdin.md.
+
 With --sweep or --seeds every case is simulated under each combination, in a search of its own, and the mean of
 all cases is told for each. Where --seeds does not say otherwise, a case has the same seeds in all of them.
 
@@ -350,6 +337,7 @@ Examples:
   gauntlet evaluate flocking --from campaigns/evolved-1,campaigns/evolved-2 --dir campaigns/f-f
   gauntlet evaluate flocking --from campaigns/evolved-1 --set controller=flocking-improved
   gauntlet evaluate flocking --from campaigns/random:worst:100
+  gauntlet evaluate flocking --stdin --dir campaigns/mine < lines.jsonl > answers.jsonl
   gauntlet evaluate flocking --case cases/*.json --replicates 20 --sweep random_faults.count=0,1,2,3)";
 
 }  // namespace
@@ -360,6 +348,7 @@ Question EvaluateQuestion() {
           .summary = "simulate given test cases: files, or those of a campaign",
           .help = kEvaluateHelp,
           .place = Question::Place::kNewCampaign,
+          .streams = true,
           .sweeps = true,
           .options = {{"--case", "FILE...", "case files, .json or .argos; several may follow", Kind::kFiles},
                       {"--from", "DIR[:SUBSET]",

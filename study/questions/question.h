@@ -100,6 +100,7 @@ struct Question {
   Place place = Place::kCampaign;
   Named named = Named::kSome;                // how many cases are named
   const char* other = "";                    // help of a second experiment; "" = there is none
+  bool streams = false;                      // its cases may also come line by line (cli/stream_run.h)
   bool sweeps = false;                       // a new campaign may have several searches, --sweep and --seeds
   std::vector<QuestionOption> options = {};  // beside those of all questions
   // The cases that are meant. Of kCampaign, as what follows.

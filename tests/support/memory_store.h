@@ -24,6 +24,7 @@ class MemoryStore final : public ResultStore {
   // What is durable; tests may change it.
   std::vector<StoredSearch> searches;
   std::map<SearchId, std::vector<Individual>> individuals;
+  std::vector<StoredLine> lines;
   std::map<RunId, StoredRun> runs;
   std::map<SearchId, std::vector<SavedState>> states;  // the newest last
   std::vector<StoredEvent> events;
@@ -46,6 +47,9 @@ class MemoryStore final : public ResultStore {
       std::vector<Individual>& all = individuals[search];
       all.insert(all.end(), born.begin(), born.end());
     });
+  }
+  void AddLine(const StoredLine& line) override {
+    waiting_.push_back([this, line] { lines.push_back(line); });
   }
   void AddRun(StoredRun run) override {
     waiting_.push_back([this, run] {
@@ -80,7 +84,15 @@ class MemoryStore final : public ResultStore {
   void CommitWithin(std::chrono::milliseconds time) override { commits_wanted_within.push_back(time); }
   int CommitNotifier() const override { return -1; }
 
-  Result<std::vector<StoredSearch>> LoadSearches() override { return searches; }
+  Result<std::vector<StoredSearch>> LoadSearches() override {
+    std::vector<StoredSearch> all = searches;
+    for (StoredSearch& search : all) {
+      for (const auto& [id, run] : runs) {
+        if (run.search == search.id) search.last_run = id;
+      }
+    }
+    return all;
+  }
   Result<std::vector<SearchTotals>> LoadTotals() override {
     std::vector<SearchTotals> all;
     for (const StoredSearch& search : searches) {
@@ -94,7 +106,22 @@ class MemoryStore final : public ResultStore {
     }
     return all;
   }
-  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override { return individuals[search]; }
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search, IndividualId after = 0) override {
+    std::vector<Individual> found = individuals[search];
+    std::erase_if(found, [after](const Individual& one) { return one.id <= after; });
+    return found;
+  }
+  Result<std::vector<StoredLine>> LoadLines(SearchId search, IndividualId after) override {
+    std::vector<StoredLine> found = lines;
+    std::erase_if(found,
+                  [&](const StoredLine& one) { return one.search != search || one.individual <= after; });
+    return found;
+  }
+  Result<std::optional<StoredLine>> FindLine(SearchId search, const std::string& name) override {
+    const auto found = std::ranges::find_if(
+        lines, [&](const StoredLine& one) { return one.search == search && one.name == name; });
+    return found == lines.end() ? std::optional<StoredLine>() : *found;
+  }
   Result<std::optional<SavedState>> LoadNewestState(SearchId search) override {
     const std::vector<SavedState>& all = states[search];
     return all.empty() ? std::optional<SavedState>() : all.back();

@@ -129,6 +129,7 @@ WorkerStatistics Scheduler::Statistics() const {
   for (const auto& [id, worker] : workers_) {
     if (worker.lost) continue;
     ++statistics.connected;
+    statistics.slots += static_cast<int>(worker.slots);
     if (!worker.live.empty()) ++statistics.busy;
     if (trust_.RecordOf(id).quarantined) ++statistics.quarantined;
   }
