@@ -1,5 +1,6 @@
 // gauntlet status: what a campaign does now; gauntlet watch: the same every second.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -124,8 +125,16 @@ std::string StatusText(const Json& status, const std::string& directory) {
                   Seconds(worker["silent_seconds"]), RunsOf(worker)});
   }
   text += "\n" + table.ToText();
-  if (workers.size() > kShownWorkers)
-    text += fmt::format("and {} more workers (all with --json)\n", workers.size() - kShownWorkers);
+  std::map<std::string, std::uint64_t> others;
+  for (std::size_t i = kShownWorkers; i < workers.size(); ++i)
+    ++others[workers[i]["state"].get<std::string>()];
+  for (const auto& [state, unlisted] : status.value("workers_not_listed", Json::object()).items()) {
+    if (unlisted != 0) others[state] += unlisted.get<std::uint64_t>();
+  }
+  std::vector<std::string> counts;
+  for (const auto& [state, workers_in_it] : others)
+    counts.push_back(fmt::format("{} {}", FormatCount(workers_in_it), state));
+  if (!counts.empty()) text += fmt::format("and {} more workers\n", fmt::join(counts, ", "));
   return text;
 }
 

@@ -196,11 +196,36 @@ std::vector<Field> FieldsOfCampaign(const MasterView& master, const CampaignProg
       {"pool_trouble", Use::kRead, OrNull(backend.pool_trouble)}};
 }
 
+constexpr std::size_t kListedWorkers = 200;
+
+// Those about whom there is something to say come first.
+std::vector<WorkerView> Listed(std::vector<WorkerView> workers) {
+  const auto noteworthy = [](const WorkerView& one) { return one.lost || one.record.quarantined; };
+  std::stable_partition(workers.begin(), workers.end(), noteworthy);
+  workers.resize(std::min(workers.size(), kListedWorkers));
+  return workers;
+}
+
+// How many others there are in each state.
+std::vector<Field> FieldsOfUnlisted(const std::vector<WorkerView>& all,
+                                    const std::vector<WorkerView>& listed) {
+  std::vector<Field> fields;
+  for (const std::string_view state : kWorkerStates) {
+    const auto is = [state](const WorkerView& one) { return StateOf(one) == state; };
+    fields.push_back(
+        {state.data(), Use::kRead, std::ranges::count_if(all, is) - std::ranges::count_if(listed, is)});
+  }
+  return fields;
+}
+
 std::vector<Field> AllFields(const MasterView& master, const CampaignProgress& progress,
                              const BackendView& backend) {
   std::vector<Field> fields = FieldsOfCampaign(master, progress, backend);
   fields.push_back(ListOf("allocations", Use::kRead, backend.allocations, FieldsOfAllocation));
-  fields.push_back(ListOf("worker_list", Use::kNeeded, backend.workers, FieldsOfWorker));
+  const std::vector<WorkerView> listed = Listed(backend.workers);
+  fields.push_back(ListOf("worker_list", Use::kNeeded, listed, FieldsOfWorker));
+  const std::vector<Field> unlisted = FieldsOfUnlisted(backend.workers, listed);
+  fields.push_back({"workers_not_listed", Use::kRead, ObjectOf(unlisted), {}, unlisted});
   return fields;
 }
 

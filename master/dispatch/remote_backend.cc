@@ -25,6 +25,8 @@ constexpr milliseconds kSuperviseEvery{100};  // at most; deaths in the pool are
 // Deaths and connections that ask to be admitted are heard of while waiting; with results without pause, so
 // often too.
 constexpr milliseconds kLookEvery{50};
+// A connection is asked for a sign of life when so many heartbeats could have come.
+constexpr int kBeatsPerSignOfLife = 30;
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
@@ -57,7 +59,7 @@ RemoteBackend::RemoteBackend(CampaignIdentity identity, const DispatchOptions& o
       clock_(clock),
       pool_(pool),
       scheduler_(options, FirstFence(identity_.epoch)),
-      workers_(transport) {}
+      workers_(transport, options.heartbeat) {}
 
 void RemoteBackend::Submit(std::vector<RunRequest> runs) {
   scheduler_.BeginBatch();
@@ -218,12 +220,11 @@ void RemoteBackend::OnHello(const PeerId& peer, const proto::Hello& hello, TimeP
   const WorkerConnections::Arrival arrival = workers_.Accept(peer, hello);
   // What was leased since a repeated hello is on its way, not lost.
   const bool repeated = arrival == WorkerConnections::Arrival::kRepeated;
-  transport_.Send(peer, proto::EncodeMasterMessage(
-                            proto::Welcome{options_.heartbeat, identity_.epoch, options_.cpu_limit_seconds,
-                                           options_.memory_limit_bytes, options_.without_ways}));
+  Welcome(hello.instance_id, now);
   if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held_leases, now)) {
     scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held_leases, now, hello.process.host);
   }
+  scheduler_.WorkerPaced(hello.instance_id, workers_.LongestPace(hello.instance_id));
   if (shutting_down_) transport_.Send(peer, proto::EncodeMasterMessage(Farewell()));
   if (repeated) return;
   log_.Report(event::kWorkerJoined,
@@ -377,9 +378,19 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
 }
 
 void RemoteBackend::SendHeartbeats(TimePoint now) {
-  if (now < next_heartbeat_) return;
-  next_heartbeat_ = now + options_.heartbeat;
-  for (const InstanceId worker : workers_.SendHeartbeats()) scheduler_.WorkerDied(worker);
+  const WorkerConnections::Beats beats = workers_.SendHeartbeats(now);
+  for (const InstanceId worker : beats.out_of_reach) scheduler_.WorkerDied(worker);
+  for (const InstanceId worker : beats.out_of_pace) {
+    Welcome(worker, now);
+    scheduler_.WorkerPaced(worker, workers_.LongestPace(worker));
+  }
+}
+
+void RemoteBackend::Welcome(InstanceId worker, TimePoint now) {
+  const milliseconds pace = workers_.Pace(worker, now);
+  workers_.Send(worker, proto::Welcome{pace, identity_.epoch, options_.cpu_limit_seconds,
+                                       options_.memory_limit_bytes, options_.without_ways});
+  transport_.SetSignOfLife(pace * kBeatsPerSignOfLife);
 }
 
 WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {

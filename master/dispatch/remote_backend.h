@@ -60,6 +60,8 @@ class RemoteBackend final : public EvaluationBackend {
   void Tell(const SchedulerOrders& orders);
   void GiveUp(const RunGivenUp& order);
   void SendHeartbeats(TimePoint now);
+  // Tells the worker how often it is to be heard.
+  void Welcome(InstanceId worker, TimePoint now);
   WaitOutcome WaitForSomething(std::chrono::milliseconds timeout, bool watch);
   void CountRejections();
 
@@ -76,7 +78,6 @@ class RemoteBackend final : public EvaluationBackend {
   std::vector<std::pair<TimePoint, InstanceId>> ended_;  // with the time until which they may be heard
   std::vector<FinishedRun> finished_;
 
-  TimePoint next_heartbeat_{};
   TimePoint next_supervision_{};
   TimePoint next_look_{};
   bool shutting_down_ = false;

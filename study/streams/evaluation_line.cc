@@ -103,7 +103,7 @@ Result<std::shared_ptr<const Experiment>> EvaluationLineReader::SettingsOf(const
   if (CpuLimitSeconds(*changed) > most) {
     return InvalidInput(fmt::format(
         "set: runs would simulate for longer than the experiment's, whose runs are ended after {} s of "
-        "CPU time: begin with the longest, as in --set scenario_parameters.duration=600",
+        "CPU time: begin with the longest, by --set",
         most));
   }
   if (settings_.size() == kMostSettings) settings_.clear();

@@ -1,4 +1,5 @@
 // Many workers, and many runs: all are served, and the master's memory does not grow with what it has done.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -36,6 +37,28 @@ TEST(CrowdTest, FiveHundredEncryptedWorkersAreAllLeasedWhenAGenerationIsQueued) 
   ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";
   EXPECT_EQ(crowd.AnswerAll(result, 1.0), 2U * kCrowd);
   EXPECT_GE(crowd.AwaitLeases(kCrowd, kPatience), 0.0) << "each has one of the next generation";
+}
+
+// As many as the largest clusters have: takes both cores for a minute, a long drill.
+TEST(CrowdDrill, FourThousandConnectedWorkersAreAllLeasedAndNoneIsLost) {
+  constexpr int kCrowd = 4096;
+  const TemporaryDirectory scratch;
+  const auto master = StartNoopMaster(scratch / "c", "tcp://0.0.0.0:*", 2 * kCrowd, 1, 2);
+  ASSERT_TRUE(Serves(scratch / "c"));
+  WorkerCrowd crowd(scratch / "c", kCrowd, perf::kNoopGoldenHashes);
+  ASSERT_TRUE(crowd.Join(kPatience)) << master->Err();
+  ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";
+  // So long that every worker had to be heard, more than once.
+  (void)crowd.AwaitLeases(3 * kCrowd, std::chrono::seconds(20));
+  ASSERT_EQ(crowd.AnswerAll(perf::NoopResult(1), 1.0), 2U * kCrowd);
+  const double seconds = crowd.AwaitLeases(kCrowd, kPatience);
+  fmt::print("leased {:.2f} s after the last answer\n", seconds);
+  EXPECT_GE(seconds, 0.0) << "each has one of the next generation";
+  EXPECT_LT(seconds, 2.0);
+  std::ifstream file(scratch / "c/status.json");
+  const auto status = nlohmann::json::parse(file, nullptr, false);
+  EXPECT_EQ(status.value("workers", 0), kCrowd);
+  EXPECT_EQ(status.value("workers_lost", -1), 0);
 }
 
 TEST(CrowdTest, MasterDoesNotGrowWithTheRunsItHasStored) {

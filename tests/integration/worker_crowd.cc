@@ -1,12 +1,15 @@
 #include "tests/integration/worker_crowd.h"
 
 #include <gtest/gtest.h>
+#include <sys/epoll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <zmq.hpp>
 
+#include "base/system/unique_fd.h"
 #include "proto/access_file.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
@@ -16,15 +19,24 @@ namespace gauntlet::testing_support {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
+namespace {
+
+constexpr std::size_t kConnectedBetween = 8;
+
+}  // namespace
+
 struct WorkerCrowd::Shared {
   zmq::context_t context{1};
   proto::Access access;
   proto::Hello hello;
+  UniqueFd news{epoll_create1(EPOLL_CLOEXEC)};
 };
 
 struct WorkerCrowd::Worker {
   zmq::socket_t socket;
   bool welcomed = false;
+  milliseconds pace{1000};  // that it was told
+  steady_clock::time_point next_beat = {};
   std::vector<proto::Lease> leases;     // not answered
   std::vector<proto::Fence> handed_in;  // not acknowledged
 
@@ -73,8 +85,12 @@ bool WorkerCrowd::Join(milliseconds patience) {
     proto::Hello hello = shared_->hello;
     hello.instance_id = first_ + i;
     workers_[i]->Say(hello);
+    Take(*workers_[i]);  // a socket tells of news from the moment on in which it was found empty
+    epoll_event news{EPOLLIN, {.u64 = i}};
+    epoll_ctl(shared_->news.get(), EPOLL_CTL_ADD, socket.get(zmq::sockopt::fd), &news);
+    // Those that are there are to be heard meanwhile.
+    if (i % kConnectedBetween == kConnectedBetween - 1) Listen(/*wait_ms=*/0);
   }
-  next_beat_ = steady_clock::now() + std::chrono::seconds(1);
   while (!workers_.empty() && steady_clock::now() < end) {
     Listen();
     if (std::all_of(workers_.begin(), workers_.end(), [](const auto& one) { return one->welcomed; }))
@@ -108,6 +124,7 @@ std::size_t WorkerCrowd::AnswerAll(const sim::RunResult& result, double cpu_seco
       ++answers;
     }
     one->leases.clear();
+    Take(*one);
   }
   return answers;
 }
@@ -119,38 +136,43 @@ void WorkerCrowd::SayGoodbye() {
 }
 
 void WorkerCrowd::Beat() {
-  if (steady_clock::now() < next_beat_) return;
-  next_beat_ = steady_clock::now() + std::chrono::seconds(1);
+  const auto now = steady_clock::now();
   for (const auto& one : workers_) {
+    if (!one->welcomed || now < one->next_beat) continue;
+    one->next_beat = now + one->pace;
     proto::Heartbeat beat{1, one->handed_in};
     for (const proto::Lease& lease : one->leases) beat.held_leases.push_back(lease.fence);
     one->Say(beat);
+    Take(*one);
   }
 }
 
-// Waits a little for messages, and takes in what is there.
-void WorkerCrowd::Listen() {
-  std::vector<zmq::pollitem_t> items;
-  items.reserve(workers_.size());
-  for (const auto& one : workers_) items.push_back({one->socket.handle(), 0, ZMQ_POLLIN, 0});
-  zmq::poll(items.data(), items.size(), milliseconds(20));
-  for (std::size_t i = 0; i < workers_.size(); ++i) {
-    Worker& one = *workers_[i];
-    if ((items[i].revents & ZMQ_POLLIN) == 0) continue;
-    zmq::message_t frame;
-    while (one.socket.recv(frame, zmq::recv_flags::dontwait)) {
-      Result<proto::MasterMessage> message = proto::DecodeMasterMessage(frame.to_string());
-      EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
-      if (!message) continue;
-      if (std::holds_alternative<proto::Welcome>(*message)) one.welcomed = true;
-      if (auto* lease = std::get_if<proto::Lease>(&*message)) one.leases.push_back(std::move(*lease));
-      if (const auto* refused = std::get_if<proto::Refused>(&*message)) ADD_FAILURE() << refused->reason;
-      if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message)) {
-        for (const proto::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
-      }
+// Waits a little for messages, and takes in what is there. Sending may swallow the news of a socket, so it is
+// looked at then too.
+void WorkerCrowd::Listen(int wait_ms) {
+  std::array<epoll_event, 1024> events;
+  const int ready = epoll_wait(shared_->news.get(), events.data(), events.size(), wait_ms);
+  for (int i = 0; i < ready; ++i) Take(*workers_[events[i].data.u64]);
+  Beat();
+}
+
+void WorkerCrowd::Take(Worker& one) {
+  zmq::message_t frame;
+  while (one.socket.recv(frame, zmq::recv_flags::dontwait)) {
+    Result<proto::MasterMessage> message = proto::DecodeMasterMessage(frame.to_string());
+    EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
+    if (!message) continue;
+    if (const auto* welcome = std::get_if<proto::Welcome>(&*message)) {
+      one.welcomed = true;
+      one.pace = welcome->heartbeat;
+      one.next_beat = steady_clock::now() + one.pace;
+    }
+    if (auto* lease = std::get_if<proto::Lease>(&*message)) one.leases.push_back(std::move(*lease));
+    if (const auto* refused = std::get_if<proto::Refused>(&*message)) ADD_FAILURE() << refused->reason;
+    if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message)) {
+      for (const proto::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
     }
   }
-  Beat();
 }
 
 }  // namespace gauntlet::testing_support

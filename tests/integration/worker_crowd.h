@@ -36,13 +36,13 @@ class WorkerCrowd {
  private:
   struct Worker;
   struct Shared;
-  void Listen();
+  void Listen(int wait_ms = 20);
+  static void Take(Worker& one);
   void Beat();
 
   std::uint64_t first_;
   std::unique_ptr<Shared> shared_;  // its context ends after all sockets
   std::vector<std::unique_ptr<Worker>> workers_;
-  std::chrono::steady_clock::time_point next_beat_{};
 };
 
 }  // namespace gauntlet::testing_support

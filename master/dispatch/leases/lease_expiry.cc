@@ -27,10 +27,15 @@ void Scheduler::WorkerJoined(InstanceId id, std::uint32_t slots, const std::vect
   trust_.Meet(id, host);
   Worker& worker = workers_[id];
   worker.slots = std::max<std::uint32_t>(1, slots);
+  worker.pace = options_.heartbeat;
   worker.draining = false;
   worker.lost = false;
   Heard(id, worker);
   Reconcile(id, worker, held, Duration::zero());
+}
+
+void Scheduler::WorkerPaced(InstanceId id, Duration heartbeat) {
+  if (const auto found = workers_.find(id); found != workers_.end()) found->second.pace = heartbeat;
 }
 
 bool Scheduler::WorkerHeard(InstanceId id, TimePoint now) {
@@ -47,7 +52,7 @@ bool Scheduler::WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, T
   if (found == workers_.end()) return false;
   if (std::exchange(found->second.lost, false)) orders_.back.push_back(id);
   Heard(id, found->second);
-  Reconcile(id, found->second, held, kCrossingHeartbeats * options_.heartbeat);
+  Reconcile(id, found->second, held, kCrossingHeartbeats * found->second.pace);
   return true;
 }
 
@@ -128,7 +133,7 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
 
 bool Scheduler::IsSilent(const Worker& worker) const {
   const Duration limit =
-      options_.lost_after * options_.heartbeat - Duration(options_.heartbeat) / kChecksPerHeartbeat;
+      options_.lost_after * worker.pace - Duration(options_.heartbeat) / kChecksPerHeartbeat;
   return !worker.lost && listening_ - std::max(worker.heard, worker.excused) >= limit;
 }
 
@@ -144,7 +149,7 @@ std::vector<InstanceId> Scheduler::Silent(TimePoint now) {
 
 void Scheduler::Excuse(InstanceId id) {
   Worker& worker = workers_.at(id);
-  if (listening_ - worker.heard < kMostExcuses * options_.lost_after * options_.heartbeat) {
+  if (listening_ - worker.heard < kMostExcuses * options_.lost_after * worker.pace) {
     worker.excused = listening_;
   }
 }

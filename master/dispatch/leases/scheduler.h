@@ -58,6 +58,8 @@ class Scheduler {
                     const std::string& host = "");
   // The following return false when the worker is unknown.
   bool WorkerHeard(InstanceId id, TimePoint now);
+  // From now on its silence is judged by this time between heartbeats; before, by options.heartbeat.
+  void WorkerPaced(InstanceId id, Duration heartbeat);
   bool WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, TimePoint now);
   bool WorkerDraining(InstanceId id);  // finishes what it has, wants nothing new
   bool WorkerLeft(InstanceId id);      // said goodbye: nothing will come from it any more

@@ -50,6 +50,7 @@ struct Worker {
   std::vector<Fence> live;   // in the order in which they were given, which is that of its work
   std::vector<Fence> loose;  // orphaned and cancelled
   Duration heard{};
+  Duration pace{};     // the time between its heartbeats, at most
   Duration excused{};  // value of listening_ at the last excuse
   bool lost = false;
   bool draining = false;

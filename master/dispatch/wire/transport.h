@@ -51,6 +51,8 @@ class Transport {
   // Waits until messages arrive, one of `fds` becomes readable, WakeUp is called or `timeout` has passed.
   virtual WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) = 0;
   virtual void WakeUp() = 0;
+  // Of connections that are made from now on (ZmqTransportOptions::sign_of_life).
+  virtual void SetSignOfLife(std::chrono::milliseconds /*time*/) {}
   virtual TransportRejections Rejections() const = 0;
   // Whether every peer that is heard has proven to know the campaign's key. Otherwise anybody may be
   // speaking.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "master/dispatch/dispatch_log.h"
 #include "proto/message_codec.h"
 
@@ -9,6 +11,7 @@ namespace gauntlet {
 namespace {
 
 constexpr int kUnreachableBeats = 2;  // a connection gets this long to come back
+constexpr int kPartThatMatters = 5;   // of a pace: a worker is told when it has changed by a fifth
 
 }  // namespace
 
@@ -43,6 +46,7 @@ void WorkerConnections::Disconnect(proto::InstanceId worker) {
   const auto speaker = speakers_.find(found->second.peer);
   if (speaker != speakers_.end() && speaker->second == worker) speakers_.erase(speaker);
   processes_.Forget(worker);
+  beats_.erase({found->second.next_beat, worker});
   workers_.erase(found);
 }
 
@@ -79,16 +83,45 @@ void WorkerConnections::SendAcknowledgements(Worker& worker) {
   worker.acknowledged.clear();
 }
 
-std::vector<proto::InstanceId> WorkerConnections::SendHeartbeats() {
-  std::vector<proto::InstanceId> out_of_reach;
+std::chrono::milliseconds WorkerConnections::PaceNow() const {
+  const auto workers = static_cast<std::int64_t>(workers_.size());
+  return std::max(heartbeat_, heartbeat_ * workers / kWorkersPerBeat);
+}
+
+std::chrono::milliseconds WorkerConnections::Pace(proto::InstanceId worker, TimePoint now) {
+  Worker& one = workers_.at(worker);
+  std::shift_right(one.paces.begin(), one.paces.end(), 1);
+  one.paces[0] = PaceNow();
+  beats_.erase({one.next_beat, worker});
+  one.next_beat = now + one.paces[0];
+  beats_.insert({one.next_beat, worker});
+  return one.paces[0];
+}
+
+std::chrono::milliseconds WorkerConnections::LongestPace(proto::InstanceId worker) const {
+  return std::ranges::max(workers_.at(worker).paces);
+}
+
+WorkerConnections::Beats WorkerConnections::SendHeartbeats(TimePoint now) {
+  Beats beats;
+  if (beats_.empty() || beats_.begin()->first > now) return beats;
   const std::string heartbeat = proto::EncodeMasterMessage(proto::Heartbeat{++heartbeats_, {}});
-  for (auto& [id, worker] : workers_) {
+  const std::chrono::milliseconds pace = PaceNow();
+  while (!beats_.empty() && beats_.begin()->first <= now) {
+    const auto [due, id] = *beats_.begin();
+    Worker& worker = workers_.at(id);
+    beats_.erase(beats_.begin());
+    worker.next_beat = now + worker.paces[0];
+    beats_.insert({worker.next_beat, id});
     SendAcknowledgements(worker);
     const bool reached = transport_.Send(worker.peer, heartbeat) != SendOutcome::kUnreachable;
     worker.unreachable = reached ? 0 : worker.unreachable + 1;
-    if (worker.unreachable >= kUnreachableBeats) out_of_reach.push_back(id);
+    if (worker.unreachable >= kUnreachableBeats) beats.out_of_reach.push_back(id);
+    const auto change = std::chrono::abs(pace - worker.paces[0]);
+    if (kPartThatMatters * change >= worker.paces[0] && beats.out_of_pace.size() < kMostRepaced)
+      beats.out_of_pace.push_back(id);
   }
-  return out_of_reach;
+  return beats;
 }
 
 }  // namespace gauntlet

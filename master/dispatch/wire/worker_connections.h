@@ -2,12 +2,16 @@
 // them.
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "base/system/clock.h"
 #include "master/dispatch/pool/process_watch.h"
 #include "master/dispatch/wire/transport.h"
 #include "proto/messages.h"
@@ -21,8 +25,10 @@ class WorkerConnections {
     PeerId peer;
     std::string label;  // instance id and host
     pid_t pid = 0;
-    std::string allocation;  // as the worker said it, "" for none
-    int unreachable = 0;     // heartbeats in a row that found no connection
+    std::string allocation;                            // as the worker said it, "" for none
+    int unreachable = 0;                               // heartbeats in a row that found no connection
+    std::array<std::chrono::milliseconds, 3> paces{};  // that it was told, the newest first
+    TimePoint next_beat = {};
     // Leases whose acknowledgement goes along with the next message, a heartbeat later at most: woken for
     // each, workers and master took another half percent of runs of 50 ms.
     std::vector<proto::Fence> acknowledged;
@@ -33,8 +39,11 @@ class WorkerConnections {
     kRepeated,  // known, from the same: said again before our welcome arrived
   };
 
-  // `transport` must outlive the object.
-  explicit WorkerConnections(Transport& transport) : transport_(transport) {}
+  // `transport` must outlive the object. `heartbeat`: the time between two of a worker, both ways, as long as
+  // no more than kWorkersPerBeat are there; of more, so many times longer.
+  static constexpr int kWorkersPerBeat = 1000;
+  WorkerConnections(Transport& transport, std::chrono::milliseconds heartbeat)
+      : transport_(transport), heartbeat_(heartbeat) {}
 
   // The worker that last said hello through this connection.
   std::optional<proto::InstanceId> SpeakerOf(const PeerId& peer) const;
@@ -54,16 +63,30 @@ class WorkerConnections {
   // Goes along with the next message to the worker.
   void Acknowledge(proto::InstanceId worker, proto::Fence fence);
   void SendAcknowledgements(proto::InstanceId worker);
-  // To everybody. Returns those who were out of reach too often in a row.
-  std::vector<proto::InstanceId> SendHeartbeats();
+  struct Beats {
+    std::vector<proto::InstanceId> out_of_reach;  // too often in a row
+    // Are to be told another pace, since the time between heartbeats has changed by a fifth: at most
+    // kMostRepaced at once.
+    std::vector<proto::InstanceId> out_of_pace;
+  };
+  static constexpr std::size_t kMostRepaced = 100;
+  // To those whose turn it is.
+  Beats SendHeartbeats(TimePoint now);
+  // The worker is told the time between heartbeats in this moment.
+  std::chrono::milliseconds Pace(proto::InstanceId worker, TimePoint now);
+  // The longest of the last three that it was told: by which its silence is judged.
+  std::chrono::milliseconds LongestPace(proto::InstanceId worker) const;
 
   // Processes of workers on this machine, under their instance ids.
   ProcessWatch& processes() { return processes_; }
 
  private:
   void SendAcknowledgements(Worker& worker);
+  std::chrono::milliseconds PaceNow() const;
 
   Transport& transport_;
+  const std::chrono::milliseconds heartbeat_;
+  std::set<std::pair<TimePoint, proto::InstanceId>> beats_;  // when each is next
   std::map<proto::InstanceId, Worker> workers_;
   std::unordered_map<PeerId, proto::InstanceId> speakers_;
   ProcessWatch processes_;

@@ -16,6 +16,7 @@
 #include <utility>
 #include <zmq.hpp>
 
+#include "base/system/clock.h"
 #include "base/system/unique_fd.h"
 #include "base/thread_sanitizer.h"
 #include "master/dispatch/wire/connection_watch.h"
@@ -35,6 +36,8 @@ constexpr std::size_t kLongestAtOnce = 4;
 constexpr std::uint64_t kLongestUnended = 4;
 constexpr std::chrono::milliseconds kWatchEvery{250};
 constexpr std::chrono::milliseconds kWatchAtLeast{2000};
+// With thousands of connections looking at them takes long: so many times that long lies between.
+constexpr int kLeastBetween = 40;
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
 constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -87,8 +90,7 @@ class RouterTransport final : public ZmqTransport {
     router_.set(zmq::sockopt::rcvhwm, options.peer_queue);
     router_.set(zmq::sockopt::linger, kLingerMilliseconds);
     router_.set(zmq::sockopt::backlog, 1024);
-    router_.set(zmq::sockopt::heartbeat_ivl, static_cast<int>(options.sign_of_life.count()));
-    router_.set(zmq::sockopt::heartbeat_timeout, static_cast<int>(options.sign_of_life.count()));
+    if (options.sign_of_life.count() > 0) SetSignOfLife(options.sign_of_life);
     if (zmq_socket_monitor(router_.handle(), kMonitorAddress, kMonitoredEvents) != 0) throw zmq::error_t();
     monitor_.set(zmq::sockopt::linger, 0);
     monitor_.connect(kMonitorAddress);
@@ -107,6 +109,12 @@ class RouterTransport final : public ZmqTransport {
   void Receive(std::size_t limit, std::vector<PeerMessage>& messages) override;
   WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) override;
   void WakeUp() override;
+  void SetSignOfLife(std::chrono::milliseconds time) override {
+    if (time == sign_of_life_) return;
+    sign_of_life_ = time;
+    router_.set(zmq::sockopt::heartbeat_ivl, static_cast<int>(time.count()));
+    router_.set(zmq::sockopt::heartbeat_timeout, static_cast<int>(time.count()));
+  }
   TransportRejections Rejections() const override { return rejections_; }
   bool KnowsItsPeers() const override { return zap_.has_value(); }
 
@@ -117,9 +125,10 @@ class RouterTransport final : public ZmqTransport {
   void WatchConnections(std::chrono::milliseconds every) {
     if (!watch_) return;
     const auto now = std::chrono::steady_clock::now();
-    if (now < watched_ + every) return;
+    if (now < watched_ + std::max<Duration>(every, kLeastBetween * watch_cost_)) return;
     watched_ = now;
     const ConnectionWatch::Closed closed = watch_->Check();
+    watch_cost_ = std::chrono::steady_clock::now() - now;
     rejections_.malformed += static_cast<std::uint64_t>(closed.endless);
     rejections_.silent += static_cast<std::uint64_t>(closed.silent);
   }
@@ -179,12 +188,14 @@ class RouterTransport final : public ZmqTransport {
   std::optional<std::string> admitted_;  // the public key of workers, 32 bytes
   const std::size_t max_message_bytes_;
   std::string endpoint_;
+  std::chrono::milliseconds sign_of_life_{0};  // 0: connections are never asked
   TransportRejections rejections_;
   int router_fd_ = -1;
   int monitor_fd_ = -1;
   std::vector<pollfd> poll_items_;
   std::optional<ConnectionWatch> watch_;  // none: not of TCP
   std::chrono::steady_clock::time_point watched_ = std::chrono::steady_clock::now();
+  Duration watch_cost_{};
 };
 
 SendOutcome RouterTransport::Send(const PeerId& peer, std::string_view bytes) {

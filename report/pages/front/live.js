@@ -138,6 +138,9 @@ class LiveView {
     this.workers.replaceChildren(...(rows.length === 0 ? [] : [
       make('h3', {}, 'Workers'), table(['worker', 'state', '>heard', '>runs done', 'simulates'], rows)]));
     this.more.hidden = workers.length <= this.shownWorkers;
+    const others = Object.entries(status.workers_not_listed ?? {}).filter(([, count]) => count > 0);
+    if (this.more.hidden && others.length > 0)
+      this.workers.append(make('p', {}, 'and ' + others.map(([state, count]) => `${grouped(count)} ${state}`).join(', ')));
   }
 
   showEvents(events) {
