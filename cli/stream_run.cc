@@ -25,6 +25,9 @@ Status CheckSame(const std::string& directory, const Experiment& here) {
   TRY(const CampaignDirectory campaign, CampaignDirectory::Open(directory));
   TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign));
   const Experiment& there = plans.front().experiment;
+  if (!RowOf(there).streamed)
+    return InvalidInput(fmt::format("{} is a campaign of a {}, no stream of cases: give another --dir",
+                                    directory, RowOf(there).title));
   for (const Key& key : AllKeysOf(there)) {
     if (key.for_people) continue;
     const KeyValue was = key.get(there);

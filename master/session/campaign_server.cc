@@ -29,13 +29,16 @@
 namespace gauntlet {
 namespace {
 
+constexpr std::uint32_t kNeverMany = 1U << 16;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
 
 // The most that any of the searches needs.
-DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_share) {
+DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, const SessionOptions& options) {
   DispatchOptions limits;
-  limits.audit_share = audit_share;
+  limits.audit_share = options.audit_share;
+  // Whoever writes lines waits for each answer.
+  if (options.feed != nullptr) limits.many_waiting = kNeverMany;
   limits.without_ways =
       std::ranges::none_of(plans, [](const SearchPlan& plan) { return KeepsWays(plan.experiment); });
   for (const SearchPlan& plan : plans) {
@@ -75,7 +78,7 @@ CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<Se
       options_(options),
       identity_{campaign.origin.campaign_id, campaign.epoch, GAUNTLET_VERSION, golden_hashes},
       cpu_before_(CostOfThisProcess().cpu_seconds),
-      dispatch_(LimitsFor(plans, options.audit_share)),
+      dispatch_(LimitsFor(plans, options)),
       files_{campaign} {
   view_.campaign_id = identity_.campaign_id;
   view_.experiment = plans.front().experiment.name;

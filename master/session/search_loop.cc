@@ -121,7 +121,7 @@ void SearchLoop::StoreResults(std::vector<FinishedRun> finished) {
   const auto workers = static_cast<std::size_t>(parts_.backend.Statistics().connected);
   if (waited_for)
     parts_.store.CommitWithin(std::chrono::milliseconds(0));
-  else if (ahead < kRunsAheadOfAWorker * workers)
+  else if (parts_.feed != nullptr || ahead < kRunsAheadOfAWorker * workers)
     parts_.store.CommitWithin(kCommitSoon);
 }
 
@@ -139,7 +139,7 @@ Status SearchLoop::TurnFeed() {
   const auto slots = static_cast<std::size_t>(parts_.backend.Statistics().slots);
   Status turned = parts_.feed->Turn(std::max(kLeastOpen, kOpenForASlot * slots));
   parts_.backend.WatchInput(parts_.feed->fd());
-  if (turned) return Ok{};
+  if (turned) return Advance();
   TRY(parts_.store.Flush());
   return turned;
 }
@@ -149,8 +149,8 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
   TimePoint last_report = parts_.clock.Now() - kPollTime;
   while (true) {
     TRY(ApplyCommits());
-    TRY(TurnFeed());
     TRY(Advance());
+    TRY(TurnFeed());
     if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
       on_progress(Progress());
       last_report = now;
