@@ -75,6 +75,7 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 }
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
+  if (RowOf(experiment).streamed) return Ok{};  // its line may have given a seed
   EvaluationRequest asked{.individual = run.individual, .evaluation = run.evaluation};
   if (RowOf(experiment).seeds_of_cases) {
     if (run.spec.empty()) return Ok{};  // rows alone are looked at

@@ -15,7 +15,8 @@ namespace gauntlet {
 // column and both values.
 Status CheckCopies(const StoredRun& run, const sim::RunResult& result);
 
-// The individual, evaluation, replicate and seed of a run belong together: the seed is derived from them.
+// The individual, evaluation, replicate and seed of a run belong together: the seed is derived from them,
+// but for a stream of cases, whose lines may give one.
 // Error: kCorrupt, naming the run.
 Status CheckSeed(const Experiment& experiment, const StoredRun& run);
 

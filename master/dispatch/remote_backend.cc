@@ -27,6 +27,7 @@ constexpr milliseconds kSuperviseEvery{100};  // at most; deaths in the pool are
 constexpr milliseconds kLookEvery{50};
 // A connection is asked for a sign of life when so many heartbeats could have come.
 constexpr int kBeatsPerSignOfLife = 30;
+constexpr int kManyGreetings = 32;
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
@@ -133,10 +134,12 @@ Status RemoteBackend::CheckPoolIsOfUse() const {
                   scheduler_.unfinished(), reasons)};
 }
 
-// On a machine with far more to do than it can, a worker may get no turn for seconds.
+// On a machine with far more to do than it can, a worker may get no turn for seconds; and where a crowd
+// connects at once, what is said waits behind thousands of handshakes.
 void RemoteBackend::ExcuseStarving(TimePoint now) {
   for (const InstanceId worker : scheduler_.Silent(now)) {
-    if (workers_.processes().WaitsForProcessor(worker)) scheduler_.Excuse(worker);
+    if (transport_.Greeting() > kManyGreetings || workers_.processes().WaitsForProcessor(worker))
+      scheduler_.Excuse(worker);
   }
 }
 
@@ -388,8 +391,9 @@ void RemoteBackend::SendHeartbeats(TimePoint now) {
 
 void RemoteBackend::Welcome(InstanceId worker, TimePoint now) {
   const milliseconds pace = workers_.Pace(worker, now);
-  workers_.Send(worker, proto::Welcome{pace, identity_.epoch, options_.cpu_limit_seconds,
-                                       options_.memory_limit_bytes, options_.without_ways});
+  transport_.Send(workers_.Find(worker)->peer, proto::EncodeMasterMessage(proto::Welcome{
+                                                   pace, identity_.epoch, options_.cpu_limit_seconds,
+                                                   options_.memory_limit_bytes, options_.without_ways}));
   transport_.SetSignOfLife(pace * kBeatsPerSignOfLife);
 }
 

@@ -1,5 +1,4 @@
 // Many workers, and many runs: all are served, and the master's memory does not grow with what it has done.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,17 +13,6 @@ namespace {
 
 constexpr const char* kNoopWorker = GAUNTLET_BINARY_DIR "/gauntlet-worker-noop";
 
-// `gauntlet master flocking` for workers whose runs do nothing.
-std::unique_ptr<Process> StartNoopMaster(const std::string& dir, const std::string& endpoint, int population,
-                                         int replicates, int generations) {
-  return std::make_unique<Process>(
-      std::vector<std::string>{GAUNTLET_BINARY_DIR "/gauntlet", "master", "flocking", "--bind", endpoint,
-                               "--dir", dir, "--quiet", "--population", std::to_string(population),
-                               "--generations", std::to_string(generations), "--set",
-                               "search.replicates=" + std::to_string(replicates)},
-      std::vector<std::string>{std::string("GAUNTLET_WORKER=") + kNoopWorker});
-}
-
 TEST(CrowdTest, FiveHundredEncryptedWorkersAreAllLeasedWhenAGenerationIsQueued) {
   // The crowd shakes hands 512 times in this process; with a sanitizer it would be silent for too long.
   constexpr int kCrowd = kSanitized ? 32 : 512;
@@ -37,28 +25,6 @@ TEST(CrowdTest, FiveHundredEncryptedWorkersAreAllLeasedWhenAGenerationIsQueued) 
   ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";
   EXPECT_EQ(crowd.AnswerAll(result, 1.0), 2U * kCrowd);
   EXPECT_GE(crowd.AwaitLeases(kCrowd, kPatience), 0.0) << "each has one of the next generation";
-}
-
-// As many as the largest clusters have: takes both cores for a minute, a long drill.
-TEST(CrowdDrill, FourThousandConnectedWorkersAreAllLeasedAndNoneIsLost) {
-  constexpr int kCrowd = 4096;
-  const TemporaryDirectory scratch;
-  const auto master = StartNoopMaster(scratch / "c", "tcp://0.0.0.0:*", 2 * kCrowd, 1, 2);
-  ASSERT_TRUE(Serves(scratch / "c"));
-  WorkerCrowd crowd(scratch / "c", kCrowd, perf::kNoopGoldenHashes);
-  ASSERT_TRUE(crowd.Join(kPatience)) << master->Err();
-  ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";
-  // So long that every worker had to be heard, more than once.
-  (void)crowd.AwaitLeases(3 * kCrowd, std::chrono::seconds(20));
-  ASSERT_EQ(crowd.AnswerAll(perf::NoopResult(1), 1.0), 2U * kCrowd);
-  const double seconds = crowd.AwaitLeases(kCrowd, kPatience);
-  fmt::print("leased {:.2f} s after the last answer\n", seconds);
-  EXPECT_GE(seconds, 0.0) << "each has one of the next generation";
-  EXPECT_LT(seconds, 2.0);
-  std::ifstream file(scratch / "c/status.json");
-  const auto status = nlohmann::json::parse(file, nullptr, false);
-  EXPECT_EQ(status.value("workers", 0), kCrowd);
-  EXPECT_EQ(status.value("workers_lost", -1), 0);
 }
 
 TEST(CrowdTest, MasterDoesNotGrowWithTheRunsItHasStored) {

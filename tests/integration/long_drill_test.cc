@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/crowd_drill.h"
@@ -224,6 +225,28 @@ TEST(LongDrill, SixtyFourWorkersUnderFullLoadAreNeverTakenForLost) {
   EXPECT_EQ(report.joined, 64);
   EXPECT_EQ(report.lost, 0);
   EXPECT_EQ(report.leased_again, 0);
+}
+
+// As many as the largest clusters have: takes both cores for half a minute.
+TEST(LongDrill, FourThousandConnectedWorkersAreAllLeasedAndNoneIsLost) {
+  constexpr int kCrowd = 4096;
+  const TemporaryDirectory scratch;
+  const auto master = StartNoopMaster(scratch / "c", "tcp://0.0.0.0:*", 2 * kCrowd, 1, 2);
+  ASSERT_TRUE(Serves(scratch / "c"));
+  WorkerCrowd crowd(scratch / "c", kCrowd, perf::kNoopGoldenHashes);
+  ASSERT_TRUE(crowd.Join(kPatience)) << master->Err();
+  ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";
+  // So long that every worker had to be heard, more than once.
+  (void)crowd.AwaitLeases(3 * kCrowd, std::chrono::seconds(20));
+  ASSERT_EQ(crowd.AnswerAll(perf::NoopResult(1), 1.0), 2U * kCrowd);
+  const double seconds = crowd.AwaitLeases(kCrowd, kPatience);
+  fmt::print("leased {:.2f} s after the last answer\n", seconds);
+  EXPECT_GE(seconds, 0.0) << "each has one of the next generation";
+  EXPECT_LT(seconds, 2.0);
+  std::ifstream file(scratch / "c/status.json");
+  const auto status = nlohmann::json::parse(file, nullptr, false);
+  EXPECT_EQ(status.value("workers", 0), kCrowd);
+  EXPECT_EQ(status.value("workers_lost", -1), 0);
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ std::string Lines(int count) {
          {{"obstacles", {{{"x", 0.1 * (i % 40) - 2.0}, {"y", 0.5}, {"length", 1.5}, {"width", 0.2}}}}}}};
     if (i % 3 == 0) line["set"] = {{"controller_parameters.turn_rate", 0.5}};
     if (i % 5 == 0) line["replicates"] = 2;
+    if (i % 7 == 0) line["seed"] = i;
     lines += line.dump() + "\n";
   }
   return lines;

@@ -13,6 +13,7 @@
 #include "proto/access_file.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 
@@ -173,6 +174,18 @@ void WorkerCrowd::Take(Worker& one) {
       for (const proto::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
     }
   }
+}
+
+// `gauntlet master flocking` for workers whose runs do nothing.
+std::unique_ptr<Process> StartNoopMaster(const std::string& dir, const std::string& endpoint, int population,
+                                         int replicates, int generations) {
+  return std::make_unique<Process>(
+      std::vector<std::string>{GAUNTLET_BINARY_DIR "/gauntlet", "master", "flocking", "--bind", endpoint,
+                               "--dir", dir, "--quiet", "--population", std::to_string(population),
+                               "--generations", std::to_string(generations), "--set",
+                               "search.replicates=" + std::to_string(replicates)},
+      std::vector<std::string>{std::string("GAUNTLET_WORKER=") + GAUNTLET_BINARY_DIR
+                               "/gauntlet-worker-noop"});
 }
 
 }  // namespace gauntlet::testing_support

@@ -10,6 +10,7 @@
 
 #include "proto/golden_hashes.h"
 #include "sim/run_result.h"
+#include "tests/support/process.h"
 
 namespace gauntlet::testing_support {
 
@@ -44,5 +45,9 @@ class WorkerCrowd {
   std::unique_ptr<Shared> shared_;  // its context ends after all sockets
   std::vector<std::unique_ptr<Worker>> workers_;
 };
+
+// `gauntlet master flocking` for workers whose runs do nothing.
+std::unique_ptr<Process> StartNoopMaster(const std::string& dir, const std::string& endpoint, int population,
+                                         int replicates, int generations);
 
 }  // namespace gauntlet::testing_support

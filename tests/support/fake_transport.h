@@ -29,6 +29,7 @@ class FakeTransport final : public Transport {
   std::vector<int> ready_fds;  // what the next Wait answers, as far as it was asked for
   TransportRejections rejections;
   bool knows_its_peers = true;
+  int greeting = 0;
 
   SendOutcome Send(const PeerId& peer, std::string_view bytes) override {
     if (unreachable_.contains(peer)) return SendOutcome::kUnreachable;
@@ -58,6 +59,7 @@ class FakeTransport final : public Transport {
   void WakeUp() override { woken_ = true; }
   TransportRejections Rejections() const override { return rejections; }
   bool KnowsItsPeers() const override { return knows_its_peers; }
+  int Greeting() const override { return greeting; }
 
  private:
   FakeClock& clock_;

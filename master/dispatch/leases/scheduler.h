@@ -49,17 +49,15 @@ class Scheduler {
   void Submit(RunRequest request);
   // The result of this finished run is stored durably.
   void Acknowledge(RunId id);
-  // No lease is given from now on.
-  void StopLeasing() { leasing_ = false; }
+  void StopLeasing() { leasing_ = false; }  // for good
 
-  // A worker said hello, for the first time or after a reconnect; `held`: the leases it works on or has
-  // results for; `host`: where it says it is, "" when it does not.
+  // A worker said hello, for the first time or after a reconnect; `held`: leases it works on or has results
+  // for; `host`: where it says it is, "" when it does not.
   void WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now,
                     const std::string& host = "");
   // The following return false when the worker is unknown.
+  void WorkerPaced(InstanceId id, Duration heartbeat);  // by which its silence is judged from now on
   bool WorkerHeard(InstanceId id, TimePoint now);
-  // From now on its silence is judged by this time between heartbeats; before, by options.heartbeat.
-  void WorkerPaced(InstanceId id, Duration heartbeat);
   bool WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, TimePoint now);
   bool WorkerDraining(InstanceId id);  // finishes what it has, wants nothing new
   bool WorkerLeft(InstanceId id);      // said goodbye: nothing will come from it any more

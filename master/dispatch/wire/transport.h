@@ -54,6 +54,9 @@ class Transport {
   // Of connections that are made from now on (ZmqTransportOptions::sign_of_life).
   virtual void SetSignOfLife(std::chrono::milliseconds /*time*/) {}
   virtual TransportRejections Rejections() const = 0;
+  // Connections whose handshake has begun and not ended: each takes milliseconds, and messages wait behind
+  // them.
+  virtual int Greeting() const { return 0; }
   // Whether every peer that is heard has proven to know the campaign's key. Otherwise anybody may be
   // speaking.
   virtual bool KnowsItsPeers() const = 0;

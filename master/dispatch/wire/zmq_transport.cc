@@ -40,7 +40,8 @@ constexpr std::chrono::milliseconds kWatchAtLeast{2000};
 constexpr int kLeastBetween = 40;
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
-constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
+constexpr int kMonitoredEvents = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
+                                 ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
                                  ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 
 // libzmq would remove the socket file of whoever listens on an ipc endpoint, and listen there itself.
@@ -116,6 +117,7 @@ class RouterTransport final : public ZmqTransport {
     router_.set(zmq::sockopt::heartbeat_timeout, static_cast<int>(time.count()));
   }
   TransportRejections Rejections() const override { return rejections_; }
+  int Greeting() const override { return greeting_; }
   bool KnowsItsPeers() const override { return zap_.has_value(); }
 
  private:
@@ -174,7 +176,9 @@ class RouterTransport final : public ZmqTransport {
     while (monitor_.recv(event, zmq::recv_flags::dontwait)) {
       std::uint16_t kind = 0;
       if (event.size() >= sizeof kind) std::memcpy(&kind, event.data(), sizeof kind);
-      ++(kind == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH ? rejections_.keys : rejections_.handshakes);
+      greeting_ += kind == ZMQ_EVENT_ACCEPTED ? 1 : -1;
+      if (kind != ZMQ_EVENT_ACCEPTED && kind != ZMQ_EVENT_HANDSHAKE_SUCCEEDED)
+        ++(kind == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH ? rejections_.keys : rejections_.handshakes);
       if (event.more()) (void)monitor_.recv(address, zmq::recv_flags::dontwait);
     }
   }
@@ -190,6 +194,7 @@ class RouterTransport final : public ZmqTransport {
   std::string endpoint_;
   std::chrono::milliseconds sign_of_life_{0};  // 0: connections are never asked
   TransportRejections rejections_;
+  int greeting_ = 0;
   int router_fd_ = -1;
   int monitor_fd_ = -1;
   std::vector<pollfd> poll_items_;

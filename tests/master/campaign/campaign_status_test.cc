@@ -67,6 +67,18 @@ TEST(CampaignStatusTest, ALeaseBeyondTheSlotsWaits) {
   EXPECT_EQ(runs.at(1).at("attempt"), 3);
 }
 
+// Of thousands the file would take the master longer than its runs.
+TEST(CampaignStatusTest, ListsTwoHundredWorkersAndCountsTheOthers) {
+  BackendView backend;
+  for (int i = 0; i < 4096; ++i) backend.workers.emplace_back().label = std::to_string(i);
+  backend.workers[4000].lost = true;
+  const auto json = nlohmann::json::parse(StatusJson({}, {}, backend));
+  EXPECT_EQ(json.at("worker_list").size(), 200U);
+  EXPECT_EQ(json.at("worker_list").at(0).at("worker"), "4000") << "about whom there is something to say";
+  EXPECT_EQ(json.at("workers_not_listed").at("idle"), 4096 - 200);
+  EXPECT_EQ(json.at("workers_not_listed").at("lost"), 0);
+}
+
 TEST(CampaignStatusTest, WordsOfOthersThatAreNotUtf8AreShownAllTheSame) {
   BackendView backend;
   backend.pool_trouble = "sbatch: erreur \xe9";

@@ -68,6 +68,60 @@ TEST_F(RemoteBackendTest, ResultsWithoutPauseDoNotKeepTheRestFromBeingHeard) {
   EXPECT_GE(looks, 19) << "in a second";
 }
 
+std::vector<std::uint64_t> PacesIn(const std::vector<v1::Envelope>& sent) {
+  std::vector<std::uint64_t> paces;
+  for (const v1::Envelope& one : sent) {
+    if (one.has_welcome()) paces.push_back(one.welcome().heartbeat_ms());
+  }
+  return paces;
+}
+
+// A master that hears thousands of workers each second does nothing else.
+TEST_F(RemoteBackendTest, ACrowdIsHeardAsManyTimesMoreSeldomAsItHasThousands) {
+  SayHello("first", HelloOf(1'000'000));
+  Poll();
+  EXPECT_THAT(PacesIn(Sent("first")), testing::ElementsAre(1000));
+  clock_.Advance(milliseconds(1));
+  constexpr InstanceId kCrowd = 2000;
+  for (InstanceId worker = 1; worker < kCrowd; ++worker) {
+    SayHello("p" + std::to_string(worker), HelloOf(worker));
+    if (worker % 500 == 0) Poll();
+  }
+  Poll();
+  EXPECT_THAT(PacesIn(Sent("p1999")), testing::ElementsAre(2000));
+  clock_.Advance(seconds(1));
+  SendHeartbeat("first");
+  Poll();
+  EXPECT_THAT(PacesIn(Sent("first")), testing::ElementsAre(2000)) << "is told with its next heartbeat";
+  EXPECT_EQ(backend_->Statistics().connected, 2000);
+}
+
+TEST_F(RemoteBackendTest, AtMostAHundredAreToldAnotherPaceAtOnce) {
+  constexpr InstanceId kCrowd = 2000;
+  for (InstanceId worker = 1; worker <= kCrowd; ++worker)
+    SayHello("p" + std::to_string(worker), HelloOf(worker));
+  Poll();
+  for (InstanceId worker = 1; worker <= kCrowd; ++worker) Sent("p" + std::to_string(worker));
+  clock_.Advance(seconds(1));
+  Poll();
+  std::size_t told = 0;
+  for (InstanceId worker = 1; worker <= kCrowd; ++worker)
+    told += PacesIn(Sent("p" + std::to_string(worker))).size();
+  EXPECT_EQ(told, 100U);
+}
+
+// What a worker says waits behind the handshakes of all who connect at once.
+TEST_F(RemoteBackendTest, WhileACrowdIsGreetedNobodyIsLostSoSoon) {
+  SayHello("p", HelloOf(kAnna));
+  Poll();
+  transport_.greeting = 1000;
+  Poll(seconds(20));
+  EXPECT_EQ(backend_->Statistics().lost, 0);
+  transport_.greeting = 0;
+  Poll(seconds(4));
+  EXPECT_EQ(backend_->Statistics().lost, 1);
+}
+
 TEST_F(RemoteBackendTest, HeartbeatsGoToEveryWorkerOncePerSecond) {
   SayHello("p", HelloOf(kAnna));
   transport_.on_wait = [this] { SendHeartbeat("p"); };

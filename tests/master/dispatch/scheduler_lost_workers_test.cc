@@ -33,6 +33,14 @@ TEST_F(SchedulerTest, LosesAWorkerWithinThreeSilentHeartbeatsAndLeasesItsRunsEls
   EXPECT_EQ(statistics.connected, 1);
 }
 
+// It was told to be heard seldom.
+TEST_F(SchedulerTest, SilenceIsJudgedByThePaceThatAWorkerWasTold) {
+  LeaseRun1To(10);
+  scheduler_.WorkerPaced(10, seconds(4));
+  EXPECT_THAT(PassTime(milliseconds(11750), {}).lost, IsEmpty());
+  EXPECT_THAT(PassTime(milliseconds(250), {}).lost, SizeIs(1));
+}
+
 // A starving worker of this machine is excused again and again, but not for ever.
 TEST_F(SchedulerTest, AnExcusedWorkerMayBeSilentTenTimesAsLong) {
   LeaseRun1To(10);

@@ -1,5 +1,5 @@
 // What is stored is what is read, and nothing stored can be changed.
-// Covers: master/store/sqlite_tables.cc, master/store/totals_table.cc
+// Covers: master/store/line_table.cc, master/store/sqlite_tables.cc, master/store/totals_table.cc
 #include "master/store/sqlite_store.h"
 
 #include <gmock/gmock.h>
@@ -41,6 +41,32 @@ class SqliteStoreTest : public testing::Test {
 
 TEST_F(SqliteStoreTest, MetaIsWhatTheCampaignWasMadeWith) {
   EXPECT_EQ(store_->meta(), MakeMeta());
+}
+
+TEST_F(SqliteStoreTest, LinesComeBackAndAreFoundByTheirNames) {
+  store_->AddLine({1, 1, "a", "content", 1, 2});
+  store_->AddLine({1, 2, "", "other", 3, 1});  // two without a name are no conflict
+  store_->AddLine({1, 3, "", "other", 4, 1});
+  Flush();
+  Reopen();
+  const std::vector<StoredLine> after = store_->LoadLines(1, 1).value();
+  ASSERT_EQ(after.size(), 2U);
+  EXPECT_EQ(after[0].individual, 2U);
+  EXPECT_EQ(after[0].name, "");
+  const std::optional<StoredLine> found = store_->FindLine(1, "a").value();
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->content, "content");
+  EXPECT_EQ(found->first_run, 1U);
+  EXPECT_EQ(found->runs, 2U);
+  EXPECT_FALSE(store_->FindLine(1, "b").value().has_value());
+  store_->AddLine({1, 4, "a", "content", 5, 1});
+  EXPECT_FALSE(store_->Flush().ok()) << "a name is given once";
+}
+
+TEST_F(SqliteStoreTest, ASearchKnowsItsLastRun) {
+  for (RunId id = 1; id <= 3; ++id) store_->AddRun(MakeRun(id));
+  Flush();
+  EXPECT_EQ(store_->LoadSearches().value().at(0).last_run, 3U);
 }
 
 TEST_F(SqliteStoreTest, RunsComeBackBitByBit) {
