@@ -25,8 +25,7 @@ constexpr milliseconds kSuperviseEvery{100};  // at most; deaths in the pool are
 // Deaths and connections that ask to be admitted are heard of while waiting; with results without pause, so
 // often too.
 constexpr milliseconds kLookEvery{50};
-// A connection is asked for a sign of life when so many heartbeats could have come.
-constexpr int kBeatsPerSignOfLife = 30;
+constexpr int kBeatsPerSignOfLife = 30;  // that could have come of a connection before it is asked
 constexpr int kManyGreetings = 32;
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
 // What a process said just before its end, its goodbye above all, is heard first.

@@ -18,6 +18,7 @@
 #include "search/cases/corpus_file.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
+#include "study/streams/evaluation_line.h"
 
 namespace gauntlet::fuzz {
 namespace {
@@ -156,10 +157,22 @@ void ReadBeginning(std::string_view bytes) {
                  "the beginning of a run does not survive:\n" + written);
 }
 
+// A line that was taken is stored, and read back by the next master.
+void ReadLine(std::string_view bytes) {
+  static EvaluationLineReader reader(
+      LoadExperiment("flocking", {"search.algorithm=stream"}, BuiltInCatalogue()).value());
+  LineError wrong;
+  const std::optional<EvaluationLine> line = reader.Read(bytes, wrong);
+  if (!line) return ExpectAGoodError(Result<int>(InvalidInput(wrong.message)));
+  const auto again = reader.Restore({.individual = 1, .content = line->content}, line->asked.test_case);
+  GAUNTLET_CHECK(again.ok() && again->seed == line->asked.seed && again->replicates == line->asked.replicates,
+                 "a line does not survive: " + line->content);
+}
+
 }  // namespace
 
 std::span<const Parser> Parsers() {
-  static const std::array<Parser, 10> parsers{{{"wire", ReadWire},
+  static const std::array<Parser, 11> parsers{{{"wire", ReadWire},
                                                {"run", ReadRun},
                                                {"case_json", ReadCaseJson},
                                                {"corpus_case", ReadCorpusCase},
@@ -168,7 +181,8 @@ std::span<const Parser> Parsers() {
                                                {"definition", ReadDefinition},
                                                {"access", ReadAccessFile},
                                                {"plugin", ReadPlugin},
-                                               {"beginning", ReadBeginning}}};
+                                               {"beginning", ReadBeginning},
+                                               {"line", ReadLine}}};
   return parsers;
 }
 
