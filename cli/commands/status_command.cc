@@ -128,7 +128,8 @@ std::string StatusText(const Json& status, const std::string& directory) {
   std::map<std::string, std::uint64_t> others;
   for (std::size_t i = kShownWorkers; i < workers.size(); ++i)
     ++others[workers[i]["state"].get<std::string>()];
-  for (const auto& [state, unlisted] : status.value("workers_not_listed", Json::object()).items()) {
+  const Json not_listed = status.value("workers_not_listed", Json::object());
+  for (const auto& [state, unlisted] : not_listed.items()) {
     if (unlisted != 0) others[state] += unlisted.get<std::uint64_t>();
   }
   std::vector<std::string> counts;

@@ -192,6 +192,8 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
     if (!chosen && RowOf(experiment).given_cases())
       return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
                                       experiment.search.algorithm, RowOf(experiment).command));
+    if (!chosen && RowOf(experiment).streamed)
+      return InvalidInput("search.algorithm = stream gets its cases line by line: use 'evaluate --stdin'");
     plan.experiment = experiment;
     // A seed that was drawn (--seed random) is that of them all.
     if (!plans.empty() && seeds.empty()) plan.experiment.seed = plans.front().experiment.seed;

@@ -122,12 +122,17 @@ std::string ArchiveText(const SearchSummary& summary, const HintContext& context
 }
 
 // What to type next; `first`: what is most worth it.
-std::string Hints(const HintContext& context, bool finished, const std::vector<NextCommand>& first) {
+std::string Hints(const HintContext& context, const CampaignSummary& summary,
+                  const std::vector<NextCommand>& first) {
   const std::string directory = PastedPath(context.directory);
   Section section{.title = "Next commands to try"};
-  if (!finished)
+  const SearchRow* search = FindSearch(summary.searches.front().search);
+  const bool streamed = search != nullptr && search->streamed;
+  if (!summary.finished)
     section.commands.push_back(
-        {fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
+        {streamed ? fmt::format("{} evaluate ... --stdin --dir {}", context.program, directory)
+                  : fmt::format("{} resume {}", context.program, directory),
+         streamed ? "as it was begun: go on where it stopped" : "go on where it stopped"});
   section.commands.insert(section.commands.end(), first.begin(), first.end());
   section.commands.push_back(
       {fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
@@ -207,8 +212,7 @@ std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& ans
   if (searches > kShownSearches)
     text += fmt::format("  and {} more; --json tells all\n", searches - kShownSearches);
   text += DistinctFailuresText(answers, context.program);
-  return text + Hints(context, summary.finished,
-                      NextCommandsOf(summary, answers, context.program, context.directory));
+  return text + Hints(context, summary, NextCommandsOf(summary, answers, context.program, context.directory));
 }
 
 }  // namespace
@@ -233,8 +237,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
   return text + facts.ToText() + RunsWithoutAResult(*only, context.directory) + Generations(*only) +
          (only->archive.axes.empty() ? Members(*only) : ArchiveText(*only, context)) +
          DistinctFailuresText(answers, context.program) +
-         Hints(context, summary.finished,
-               NextCommandsOf(summary, answers, context.program, context.directory));
+         Hints(context, summary, NextCommandsOf(summary, answers, context.program, context.directory));
 }
 
 std::string TypesText(const CampaignSummary& summary) {

@@ -156,6 +156,7 @@ class Campaigns final : public CampaignService {
  public:
   Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
                               const SessionOptions& options) override {
+    GAUNTLET_CHECK(!RowOf(searches.front().experiment).streamed, "a stream is prepared, and then resumed");
     // Before anything is made: the corrected command is to find the directory as this one did.
     TRY(TryToListen(options.bind));
     const std::vector<SearchPlan> plans = Numbered(searches);

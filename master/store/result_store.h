@@ -73,6 +73,8 @@ struct StoredLine {
   std::string content;          // what it asks for, but for the case itself
   RunId first_run = 0;
   std::uint32_t runs = 1;
+
+  bool HasSettings() const { return content.find("\"set\":") != std::string::npos; }
 };
 
 struct SavedState {

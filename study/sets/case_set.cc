@@ -41,7 +41,7 @@ Result<std::vector<CaseSet>> ReadCaseSets(const std::string& text) {
           fmt::format("{}: cases come from a campaign's directory, not from a file", part.path));
     }
     TRY(const auto opened, OpenSubset(part));
-    TRY(CheckOneSetting(opened.plans, part.path));
+    TRY(CheckOneSetting(opened.plans, part.path, opened.campaign.store.get()));
     TRY(auto sets, CasesOf(opened.plans, *opened.campaign.store, part.path, opened.subset));
     if (!opened.note.empty()) sets.front().notes.push_back(opened.note);
     std::ranges::move(sets, std::back_inserter(all));

@@ -62,7 +62,7 @@ Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& s
 
 Status AddCampaign(const SetPart& part, const std::string& metric, RunSet& set) {
   TRY(const auto opened, OpenSubset(part));
-  TRY(CheckOneSetting(opened.plans, part.path));
+  TRY(CheckOneSetting(opened.plans, part.path, opened.campaign.store.get()));
   if (!opened.note.empty()) set.notes.push_back(opened.note);
   SqliteStore& store = *opened.campaign.store;
   TRY(auto hashes, proto::ReadGoldenHashes(store.meta().golden_hashes));

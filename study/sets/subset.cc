@@ -180,10 +180,17 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
   return parts;
 }
 
-Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place) {
+Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place, ResultStore* store) {
   const auto varies = [](const SearchPlan& plan) { return RowOf(plan.experiment).varies_settings; };
   const auto one = std::ranges::find_if(plans, varies);
   if (one == plans.end()) return Ok{};
+  if (RowOf(one->experiment).streamed && store != nullptr) {
+    TRY(const std::vector<StoredLine> lines, store->LoadLines(one->id, 0));
+    if (std::ranges::none_of(lines, &StoredLine::HasSettings)) return Ok{};
+    return InvalidInput(
+        place +
+        ": lines of it had settings of their own, so its runs are neither one set nor cases for other runs");
+  }
   return InvalidInput(fmt::format(
       "{} is a {}: its runs have different settings, so they are neither one set nor cases for other runs",
       place, RowOf(one->experiment).command));

@@ -56,7 +56,9 @@ struct SubsetSearch {
 };
 // Error: runs of one of the searches have settings of their own (SearchRow::varies_settings), so that they
 // cannot be taken together.
-Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place);
+// Of a stream of cases the store says whether any line had settings of its own; without it, one may have.
+Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place,
+                       ResultStore* store = nullptr);
 
 // Visits them in the order of their numbers, until one of the visits fails. Error: there is no such search.
 Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,
