@@ -1,4 +1,5 @@
 // The short one of the tests on a real Slurm.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -66,6 +67,27 @@ TEST_F(SlurmTest, ASubmittedSearchEndsLikeALocalOneAndLeavesNothing) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("a job script cannot hold a line break"));
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "two\nlines"));
+}
+
+// The master reads its lines here.
+TEST_F(SlurmTest, AStreamOfCasesTakesItsWorkersFromSlurm) {
+  StartCluster({"--nodes", "1", "--cpus", "4"});
+  std::ofstream(scratch_ / "lines") << R"({"id": "a", "case": {}})"
+                                    << "\n"
+                                    << R"({"id": "b", "case": {}})"
+                                    << "\n";
+  const std::string command = fmt::format(
+      "exec {} evaluate flocking --stdin --quiet --dir {} --slurm bind=tcp://127.0.0.1:* --slurm "
+      "max_allocations=1 < {}",
+      GauntletPath(), dir(), scratch_ / "lines");
+  const ProcessResult first = RunProcess({"/bin/sh", "-c", command});
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.out, AllOf(HasSubstr(R"({"id":"a","line":1)"), HasSubstr(R"({"id":"b","line":2)")));
+  EXPECT_TRUE(QueueEmpties());
+  const ProcessResult again = RunProcess({"/bin/sh", "-c", command});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, first.out) << "from the store";
+  EXPECT_TRUE(QueueEmpties());
 }
 
 // Master and workers on other nodes have the plug-in from the campaign's directory.
