@@ -126,13 +126,9 @@ std::string Hints(const HintContext& context, const CampaignSummary& summary,
                   const std::vector<NextCommand>& first) {
   const std::string directory = PastedPath(context.directory);
   Section section{.title = "Next commands to try"};
-  const SearchRow* search = FindSearch(summary.searches.front().search);
-  const bool streamed = search != nullptr && search->streamed;
   if (!summary.finished)
     section.commands.push_back(
-        {streamed ? fmt::format("{} evaluate ... --stdin --dir {}", context.program, directory)
-                  : fmt::format("{} resume {}", context.program, directory),
-         streamed ? "as it was begun: go on where it stopped" : "go on where it stopped"});
+        {GoOnCommand(summary, context.program, context.directory), "go on where it stopped"});
   section.commands.insert(section.commands.end(), first.begin(), first.end());
   section.commands.push_back(
       {fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});

@@ -289,22 +289,24 @@ class Campaigns final : public CampaignService {
     TRY(const CampaignView campaign, ViewCampaign(dir, Checked::kTotals));
     TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
     TRY(const CampaignSummary summary, SummariseTotals(plans, *campaign.store));
-    return JsonText({{"state", summary.finished ? "finished" : "stopped"},
-                     {"experiment", summary.experiment},
-                     {"master", nullptr},
-                     {"generation", summary.progress.generation},
-                     {"generations", summary.progress.generations},
-                     {"searches_in_words", summary.each.InWords()},
-                     {"runs_done", summary.runs_done},
-                     {"total_failures", summary.total_failures},
-                     {"runs_failed", summary.runs_failed},
-                     {"workers", 0},
-                     {"nondeterministic", summary.nondeterministic},
-                     {"verdicts_of_one_worker", summary.lone_verdicts},
-                     {"why_nothing_runs",
-                      summary.finished ? "the campaign has finished"
-                                       : "no master serves the campaign: go on with `gauntlet resume DIR`"},
-                     {"worker_list", ordered_json::array()}});
+    return JsonText(
+        {{"state", summary.finished ? "finished" : "stopped"},
+         {"experiment", summary.experiment},
+         {"master", nullptr},
+         {"generation", summary.progress.generation},
+         {"generations", summary.progress.generations},
+         {"searches_in_words", summary.each.InWords()},
+         {"runs_done", summary.runs_done},
+         {"total_failures", summary.total_failures},
+         {"runs_failed", summary.runs_failed},
+         {"workers", 0},
+         {"nondeterministic", summary.nondeterministic},
+         {"verdicts_of_one_worker", summary.lone_verdicts},
+         {"why_nothing_runs", summary.finished ? "the campaign has finished"
+                              : RowOf(plans.front().experiment).streamed
+                                  ? "no master serves the campaign: go on by the command that began it"
+                                  : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+         {"worker_list", ordered_json::array()}});
   }
 
   Status RequestStop(const std::string& dir) override {

@@ -90,7 +90,7 @@ std::string ProvenanceHtml(const CampaignFacts& facts) {
 // The command that makes the same campaign again; "" where there is no single one.
 std::string AgainCommand(const CampaignFacts& facts) {
   const SearchRow& row = RowOf(facts.plans.front().experiment);
-  if (facts.plans.size() != 1 || row.given_cases()) return "";
+  if (facts.plans.size() != 1 || row.given_cases() || row.streamed) return "";
   const std::string toml = PastedPath(facts.directory + "/experiment.toml");
   const std::string length =
       row.length_option.empty()
@@ -112,7 +112,8 @@ std::string CommandsHtml(const CampaignFacts& facts) {
     section.commands.push_back({"gauntlet show again", "Its state hash"});
   }
   if (!facts.summary.finished)
-    section.commands.push_back({"gauntlet resume " + dir, "Go on where it stopped"});
+    section.commands.push_back(
+        {GoOnCommand(facts.summary, "gauntlet", facts.directory), "Go on where it stopped"});
   section.commands.push_back(
       {fmt::format("gauntlet export {} --format csv --out runs.csv", dir), "Every run as a table"});
   return ToHtml(section);

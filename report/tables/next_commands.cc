@@ -36,6 +36,14 @@ std::optional<NextCommand> ShowToughest(const CampaignSummary& summary, const Be
 
 }  // namespace
 
+std::string GoOnCommand(const CampaignSummary& summary, const std::string& program,
+                        const std::string& directory) {
+  const SearchRow* row = FindSearch(summary.searches.front().search);
+  const bool streamed = row != nullptr && row->streamed;
+  return streamed ? fmt::format("{} evaluate ... --stdin --dir {}", program, PastedPath(directory))
+                  : fmt::format("{} resume {}", program, PastedPath(directory));
+}
+
 std::string ConfirmCommand(const CampaignSummary& summary, const std::string& program,
                            const std::string& directory) {
   const SearchSummary* only = summary.OnlySearch();

@@ -11,6 +11,10 @@
 namespace gauntlet {
 
 // `program`: how the commands begin; `directory`: of the campaign.
+// The command that goes on with a campaign that has not ended: of a stream the one that began it.
+std::string GoOnCommand(const CampaignSummary& summary, const std::string& program,
+                        const std::string& directory);
+
 std::string ConfirmCommand(const CampaignSummary& summary, const std::string& program,
                            const std::string& directory);
 std::vector<NextCommand> NextCommandsOf(const CampaignSummary& summary, const CampaignAnswers& answers,

@@ -51,6 +51,14 @@ TEST(NextCommands, OfAnArchiveShowItsSmallestFailureAndConfirmItsElites) {
       << "named by the run in which it failed first, as the archive's rows and confirm name it";
 }
 
+TEST(NextCommands, AStreamGoesOnByTheCommandThatBeganIt) {
+  const CampaignSummary stream = SweptCampaign({SearchOfCases("", 1, 2, "stream")});
+  EXPECT_EQ(GoOnCommand(stream, "g", "d"), "g evaluate ... --stdin --dir d");
+  EXPECT_EQ(GoOnCommand(SweptCampaign({SearchOfCases("", 1, 2)}), "g", "d"), "g resume d");
+  EXPECT_THAT(CommandsFor(stream),
+              ElementsAre("g replay d 1 --svg case-1.svg", "g confirm d --all-failing --replicates 20"));
+}
+
 TEST(NextCommands, OfWhatNeverFailedOnlyShowIt) {
   EXPECT_THAT(CommandsFor(SweptCampaign({SearchOfCases("", 0, 1)})),
               ElementsAre("g replay d 1 --svg case-1.svg"));
