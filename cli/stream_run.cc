@@ -26,7 +26,7 @@ Status CheckSame(const std::string& directory, const Experiment& here) {
   TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign));
   const Experiment& there = plans.front().experiment;
   if (!RowOf(there).streamed)
-    return InvalidInput(fmt::format("{} is a campaign of a {}, no stream of cases: give another --dir",
+    return InvalidInput(fmt::format("{} holds another search ({}) and no stream of cases: give another --dir",
                                     directory, RowOf(there).title));
   for (const Key& key : AllKeysOf(there)) {
     if (key.for_people) continue;
@@ -100,7 +100,7 @@ Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
     if (!options.running.quiet)
       PrintMessage(
           context,
-          fmt::format("{} answered; {} are stored; see: {} show {}", Counted(pipe.lines(), "line"),
+          fmt::format("{} answered, {} stored; see: {} show {}", Counted(pipe.lines(), "line"),
                       Counted(report.summary.runs_done, "run"), context.program, PastedPath(directory)));
     return Ok{};
   };

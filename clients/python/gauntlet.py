@@ -141,7 +141,9 @@ class Evaluator(ContextManager["Evaluator"]):
         path = None if file is None else os.fspath(file)
         given = {"case": case, "file": path, "set": set, "seed": seed, "replicates": replicates}
         request = {key: value for key, value in given.items() if value is not None}
-        named = b"" if file is None else pathlib.Path(file).read_bytes()  # another when the file has changed
+        if path is not None and os.path.exists(path) and not os.path.isfile(path):
+            raise ValueError(f"{path} is no regular file")  # reading a pipe or a device may never end
+        named = b"" if path is None else pathlib.Path(path).read_bytes()  # another when the file has changed
         content = hashlib.sha256(_line(request) + named).hexdigest()
         future: Future[Evaluation] = Future()
         future.set_running_or_notify_cancel()
@@ -177,6 +179,8 @@ class Evaluator(ContextManager["Evaluator"]):
         depends neither on the number of workers nor on their speed. Raises what
         `submit` and its futures raise, but nothing for validity rules.
         """
+        if at_once < 1:
+            raise ValueError(f"at_once is {at_once}, expected 1 or more")
         waiting: collections.deque[Any] = collections.deque()
         for number in range(evaluations + at_once):
             if number >= at_once:

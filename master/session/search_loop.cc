@@ -150,11 +150,11 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
   while (true) {
     TRY(ApplyCommits());
     TRY(Advance());
-    TRY(TurnFeed());
     if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
       on_progress(Progress());
       last_report = now;
     }
+    TRY(TurnFeed());
     const bool searched = running_.empty();
     const bool drained = parts_.feed == nullptr || parts_.feed->Drained();
     if (searched && drained && parts_.backend.Statistics().audits_open == 0) break;

@@ -1,6 +1,7 @@
 #include "study/streams/evaluation_line.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "base/mean_and_range.h"
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
+#include "base/printable.h"
 #include "base/utf8.h"
 #include "controllers/registry.h"
 #include "master/dispatch/leases/run_limits.h"
@@ -54,7 +56,11 @@ Result<sim::TestCase> CaseOf(const nlohmann::json& json) {
     return std::move(document.test_case);
   }
   if (!json["file"].is_string()) return Wrong("file", json["file"], "the path of a case file");
-  TRY(LoadedCase loaded, LoadCase(json["file"].get<std::string>()));
+  const std::string file = json["file"].get<std::string>();
+  std::error_code error;  // a missing one is told by LoadCase
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    return InvalidInput(Printable(file) + " is no regular file, and a line can name nothing else");
+  TRY(LoadedCase loaded, LoadCase(file));
   return std::move(loaded.test_case);
 }
 

@@ -147,8 +147,8 @@ Status EvaluationPipe::WriteSome() {
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) return Ok{};
     if (size < 0)
       return Error{ErrorKind::kIo,
-                   fmt::format("nobody reads the answers: standard output cannot be written: {}",
-                               std::strerror(errno))};
+                   fmt::format("{}standard output cannot be written: {}",
+                               errno == EPIPE ? "nobody reads the answers: " : "", std::strerror(errno))};
     written_ += static_cast<std::size_t>(size);
     Drop(output_, written_);
   }

@@ -138,7 +138,8 @@ class Errors(Fixture):
 
     def test_of_the_arguments_are_told_at_once(self):
         with self.open() as g:
-            for arguments in ({}, {"case": {}, "file": "case.json"}, {"case": wall(float("nan"))}):
+            for arguments in ({}, {"case": {}, "file": "case.json"}, {"case": wall(float("nan"))},
+                              {"file": "/dev/zero"}):
                 with self.assertRaises(ValueError):
                     g.submit(**arguments)
             with self.assertRaises(FileNotFoundError):

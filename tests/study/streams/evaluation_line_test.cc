@@ -87,6 +87,8 @@ TEST_F(EvaluationLineTest, BadLinesAreToldWhatWouldBeRight) {
       {R"({})", "which case?"},
       {R"({"case": {}, "file": "x.json"})", "which case?"},
       {R"({"file": "no-such.json"})", "no-such.json"},
+      {R"({"file": "/dev/zero"})", "/dev/zero is no regular file"},
+      {R"({"file": "/"})", "/ is no regular file"},
       {R"({"case": {"obstacles": 3}})", "obstacles must be a list"},
       {R"({"case": {}, "set": 3})", "set is 3"},
       {R"({"case": {}, "set": {"scenario": "foraging"}})", "scenario is the same for all lines"},
