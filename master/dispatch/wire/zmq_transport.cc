@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -38,6 +39,7 @@ constexpr std::chrono::milliseconds kWatchEvery{250};
 constexpr std::chrono::milliseconds kWatchAtLeast{2000};
 // With thousands of connections looking at them takes long: so many times that long lies between.
 constexpr int kLeastBetween = 40;
+constexpr std::chrono::seconds kLongestGreeting{10};
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
 constexpr int kMonitoredEvents = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
@@ -117,7 +119,10 @@ class RouterTransport final : public ZmqTransport {
     router_.set(zmq::sockopt::heartbeat_timeout, static_cast<int>(time.count()));
   }
   TransportRejections Rejections() const override { return rejections_; }
-  int Greeting() const override { return greeting_; }
+  // Should the end of a greeting go unheard, it is forgotten with the crowd that it came with.
+  int Greeting() const override {
+    return std::chrono::steady_clock::now() - accepted_ < kLongestGreeting ? greeting_ : 0;
+  }
   bool KnowsItsPeers() const override { return zap_.has_value(); }
 
  private:
@@ -176,7 +181,8 @@ class RouterTransport final : public ZmqTransport {
     while (monitor_.recv(event, zmq::recv_flags::dontwait)) {
       std::uint16_t kind = 0;
       if (event.size() >= sizeof kind) std::memcpy(&kind, event.data(), sizeof kind);
-      greeting_ += kind == ZMQ_EVENT_ACCEPTED ? 1 : -1;
+      greeting_ = std::max(0, greeting_ + (kind == ZMQ_EVENT_ACCEPTED ? 1 : -1));
+      if (kind == ZMQ_EVENT_ACCEPTED) accepted_ = std::chrono::steady_clock::now();
       if (kind != ZMQ_EVENT_ACCEPTED && kind != ZMQ_EVENT_HANDSHAKE_SUCCEEDED)
         ++(kind == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH ? rejections_.keys : rejections_.handshakes);
       if (event.more()) (void)monitor_.recv(address, zmq::recv_flags::dontwait);
@@ -195,6 +201,7 @@ class RouterTransport final : public ZmqTransport {
   std::chrono::milliseconds sign_of_life_{0};  // 0: connections are never asked
   TransportRejections rejections_;
   int greeting_ = 0;
+  std::chrono::steady_clock::time_point accepted_{};
   int router_fd_ = -1;
   int monitor_fd_ = -1;
   std::vector<pollfd> poll_items_;
