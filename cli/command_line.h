@@ -30,9 +30,8 @@ struct CommandContext {
   bool out_is_terminal = false;
   std::string program = "gauntlet";  // how hints begin
   CampaignService& campaigns = CampaignsOnDisk();
-  std::function<std::unique_ptr<slurm::SlurmClient>()> slurm = [] {
-    return std::make_unique<slurm::CommandLineSlurm>();
-  };
+  // Instead of what a campaign's own cluster file says, in tests.
+  std::function<std::unique_ptr<slurm::SlurmClient>()> slurm = nullptr;
   std::string version = "gauntlet";  // what --version prints
 };
 

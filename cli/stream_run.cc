@@ -85,15 +85,15 @@ Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
   run.directory = directory;
   run.goes_on_by = fmt::format("evaluate {} --stdin --dir {}, and the other options of this call",
                                ShellQuoted(options.experiment.experiment), PastedPath(directory));
-  run.announcement =
-      fmt::format("{}: cases from stdin, {}, seed {}, in {}", experiment.name,
-                  jobs ? "workers from Slurm" : Counted(workers, "worker"), experiment.seed, directory);
+  run.announcement = fmt::format("{}: cases from stdin, {}, seed {}, in {}", experiment.name,
+                                 jobs ? "workers from " + jobs->cluster().name : Counted(workers, "worker"),
+                                 experiment.seed, directory);
   run.serving = options.running;
   run.session.workers = workers;
   run.session.feed = &pipe;
   if (jobs) {
     run.bind.endpoint = jobs->settings().bind;
-    run.session.make_pool = [&] { return jobs->MakePool(context.slurm()); };
+    run.session.make_pool = [&] { return jobs->MakePool(ClientOf(context, *jobs)); };
   }
   run.run = [&](const SessionOptions& session) { return context.campaigns.Resume(directory, session); };
   run.report = [&](const SessionReport& report) -> Status {

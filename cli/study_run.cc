@@ -45,10 +45,11 @@ Status MakeStage(CommandContext& context, const Study& study, const StudyRun& ru
 std::string Announcement(const Study& study, const CampaignRun& campaign, const StudyRun& run,
                          StudyStage stage) {
   const int workers = campaign.session.workers;
-  return fmt::format(
-      "{}: {}, {}, in {}", study.name, stage == StudyStage::kSearches ? "searches" : "re-simulations",
-      run.submitted != nullptr ? std::string("workers from Slurm") : Counted(workers, "worker"),
-      campaign.directory);
+  return fmt::format("{}: {}, {}, in {}", study.name,
+                     stage == StudyStage::kSearches ? "searches" : "re-simulations",
+                     run.submitted != nullptr ? std::string("workers from ") + run.submitted->cluster().name
+                                              : Counted(workers, "worker"),
+                     campaign.directory);
 }
 
 Result<ExitCode> RunStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage,
@@ -70,7 +71,7 @@ Result<ExitCode> RunStage(CommandContext& context, const Study& study, const Stu
     campaign.bind.endpoint = jobs->settings().bind;
     campaign.session.workers = 0;
     campaign.session.batch_job = run.batch_job;
-    campaign.session.make_pool = [&] { return jobs->MakePool(context.slurm()); };
+    campaign.session.make_pool = [&] { return jobs->MakePool(ClientOf(context, *jobs)); };
   }
   campaign.announcement = Announcement(study, campaign, run, stage);
   campaign.run = [&](const SessionOptions& session) {
@@ -192,7 +193,7 @@ void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options) {
       "cost on this machine");
   command.add_flag(
       "--submit", options.submit,
-      "run the workers, and by default the master, as jobs of a Slurm cluster ('gauntlet submit --help' "
+      "run the workers, and by default the master, as jobs of a cluster ('gauntlet submit --help' "
       "lists the settings)");
   AddPluginOption(command, options.plugins);
   AddSlurmOptions(command, options.slurm);

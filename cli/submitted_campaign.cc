@@ -29,14 +29,19 @@ Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
       settings.master == slurm::MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
   TRY(CheckBindEndpoint(settings.bind, where));
   if (settings.tag.empty()) settings.tag = slurm::DrawTag(name);
-  for (std::string* path : {&settings.worker_template, &settings.master_template}) {
-    if (path->empty()) continue;
+  for (std::string* path : {&settings.worker_template, &settings.master_template, &settings.cluster}) {
+    if (path->empty() || (path == &settings.cluster && !slurm::IsClusterFile(*path))) continue;
     // Links are followed now, by whoever names the file; what the campaign keeps leads to the file itself.
     std::error_code error;
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(*path, error);
     *path = error ? std::filesystem::absolute(*path, error).string() : canonical.string();
   }
   return settings;
+}
+
+std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,
+                                             const slurm::SlurmCampaign& campaign) {
+  return context.slurm ? context.slurm() : campaign.MakeClient();
 }
 
 Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print) {
@@ -47,14 +52,18 @@ Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, b
   std::vector<PlannedJob> jobs = {{"a job of workers", campaign.worker_script()}};
   if (campaign.settings().master == slurm::MasterPlace::kJob)
     jobs.insert(jobs.begin(), {"the master's job", campaign.master_script()});
-  const std::unique_ptr<slurm::SlurmClient> client = context.slurm();
+  const std::unique_ptr<slurm::SlurmClient> client = ClientOf(context, campaign);
+  // "sbatch --test-only"
+  const std::string& command = campaign.cluster().test;
+  const std::string test = command.substr(0, command.find(" \"$@\""));
   Status outcome = Ok{};
   for (const PlannedJob& job : jobs) {
     if (!outcome && !print) break;
     const Result<std::string> answer = client->TestOnly(job.script, {});
     const std::string words = answer ? *answer : answer.error().message;
     if (print)
-      context.out << fmt::format("# {}\n{}\n# sbatch --test-only: {}\n\n", job.what, job.script, words);
+      context.out << fmt::format("# {}\n{}\n{}\n", job.what, job.script,
+                                 words.empty() ? "" : fmt::format("# {}: {}\n", test, words));
     if (!answer && outcome) {
       outcome = Error{answer.error().kind,
                       fmt::format("{} could not start: {}{}", job.what, words, slurm::NextStep(words))};
@@ -73,7 +82,7 @@ Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& o
   run.bind.endpoint = campaign.settings().bind;
   run.session.workers = 0;
   run.session.batch_job = batch_job;
-  run.session.make_pool = [&] { return campaign.MakePool(context.slurm()); };
+  run.session.make_pool = [&] { return campaign.MakePool(ClientOf(context, campaign)); };
   bool served = false;
   run.run = [&](const SessionOptions& session) {
     Result<SessionReport> report = context.campaigns.Resume(directory, session);
@@ -83,7 +92,7 @@ Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& o
   TRY(const ExitCode code, RunCampaign(context, run));
   // Of a master that was killed between its last result and its farewell.
   if (code == kExitDone && !served && batch_job.empty()) {
-    const Result<std::vector<std::string>> cancelled = campaign.CancelJobs(*context.slurm());
+    const Result<std::vector<std::string>> cancelled = campaign.CancelJobs(*ClientOf(context, campaign));
     if (!cancelled) PrintMessage(context, cancelled.error().message);
   }
   return code;
@@ -91,8 +100,8 @@ Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& o
 
 Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,
                                     const slurm::SlurmCampaign& campaign) {
-  TRY(MakeDirectory(directory + "/log"));  // Slurm makes none
-  Result<std::string> job = context.slurm()->Submit(campaign.master_script(), {});
+  TRY(MakeDirectory(directory + "/log"));  // no scheduler makes one
+  Result<std::string> job = ClientOf(context, campaign)->Submit(campaign.master_script(), {});
   if (!job) {
     const std::string& words = job.error().message;
     return Error{job.error().kind,

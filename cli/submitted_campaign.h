@@ -1,6 +1,7 @@
-// Campaigns that run in Slurm, for the commands that meet one.
+// Campaigns that run in a cluster, for the commands that meet one.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -16,16 +17,20 @@ Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
                                               const std::optional<slurm::SlurmSource>& file,
                                               const std::string& name);
 
-// Asks Slurm of the campaign's jobs whether they could ever start; `print` scripts and answers too. Error:
-// the first that could not.
+// What speaks to the campaign's cluster.
+std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,
+                                             const slurm::SlurmCampaign& campaign);
+
+// Asks the cluster of the campaign's jobs whether they could ever start; `print` scripts and answers too.
+// Error: the first that could not.
 Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print);
 
-// A master in this process with a pool of Slurm allocations. `batch_job`: the job that holds it, "" for none.
+// A master in this process with a pool of allocations. `batch_job`: the job that holds it, "" for none.
 Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& options,
                                 const std::string& directory, const slurm::SlurmCampaign& campaign,
                                 const std::string& batch_job);
 
-// Hands the master's job of an existing campaign to Slurm. Error: with what to do next.
+// Hands the master's job of an existing campaign to its cluster. Error: with what to do next.
 Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,
                                     const slurm::SlurmCampaign& campaign);
 

@@ -7,6 +7,7 @@
 
 #include "base/shell_quoted.h"
 #include "slurm/job_status.h"
+#include "slurm/shipped_texts.h"
 
 namespace gauntlet::slurm {
 namespace {
@@ -71,24 +72,29 @@ std::string LogFile(const std::string& directory, std::string_view stem, std::st
   return InQuotes(literal ? path + ".log" : path.append(pattern).append(".log"));
 }
 
-Result<std::string> Directives(const JobRequest& request) {
+// Whether the lines behind the directives are those of kRunJob.
+constexpr std::string_view kRun = "@RUN@";
+bool IsRun(std::string_view job_template) {
+  return job_template.find(kRun) != std::string_view::npos;
+}
+
+// Lines for what is asked for, in the order of the settings.
+Result<std::string> Directives(std::vector<std::pair<std::string, std::string>> wanted,
+                               const Cluster& cluster) {
   std::string lines;
-  for (const auto& [option, value] : {std::pair{"partition", &request.partition},
-                                      {"account", &request.account},
-                                      {"qos", &request.qos},
-                                      {"constraint", &request.constraint},
-                                      {"mem", &request.memory}}) {
-    if (IsBroken(*value)) return InvalidInput("a Slurm option cannot hold a line break: '" + *value + "'");
-    if (!value->empty()) lines += std::string("#SBATCH --") + option + "=" + *value + "\n";
+  for (const auto& [name, value] : wanted) {
+    if (value.empty()) continue;
+    if (IsBroken(value))
+      return InvalidInput("a " + cluster.name + " option cannot hold a line break: '" + value + "'");
+    if (name == "extra" && !value.starts_with("-"))
+      return InvalidInput("slurm.extra has '" + value + "': give options as on the command line of " +
+                          ProgramOf(cluster.submit) + ", --exclusive");
+    const auto line = cluster.directives.find(name);
+    if (line == cluster.directives.end())
+      return InvalidInput("slurm." + name + " = " + value + ": " + cluster.name +
+                          " has no directive for it in its cluster file");
+    lines += (lines.empty() ? "" : "\n") + Replaced(line->second, "@VALUE@", value);
   }
-  for (const std::string& option : request.extra) {
-    if (IsBroken(option)) return InvalidInput("slurm.extra: an option cannot hold a line break");
-    if (!option.starts_with("-"))
-      return InvalidInput("slurm.extra has '" + option +
-                          "': give sbatch options as on its command line, --exclusive");
-    lines += "#SBATCH " + option + "\n";
-  }
-  if (!lines.empty()) lines.pop_back();
   return lines;
 }
 
@@ -100,52 +106,87 @@ Status CheckOneLine(const Values& values) {
   return Ok{};
 }
 
-// Seconds before the time limit at which Slurm shall send its signal: two minutes, of a short limit a
+// Seconds before the time limit at which the job shall be told: two minutes, of a short limit a
 // quarter.
-long SignalMargin(const std::string& time_limit) {
+long SignalMargin(long time_limit) {
   constexpr long kMargin = 120;
   constexpr long kShare = 4;
-  const Result<long> seconds = ParseTimeLimit(time_limit);
-  return seconds ? std::min(kMargin, *seconds / kShare) : kMargin;
+  return std::min(kMargin, time_limit / kShare);
 }
 
-Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request) {
-  TRY(const auto directives, Directives(request));
-  values["DIRECTIVES"] = directives;
+// `job`: what the job itself wants of the cluster.
+Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request,
+                           std::vector<std::pair<std::string, std::string>> job, const Cluster& cluster) {
+  std::vector<std::pair<std::string, std::string>> wanted = {{"partition", request.partition},
+                                                             {"account", request.account},
+                                                             {"qos", request.qos},
+                                                             {"constraint", request.constraint},
+                                                             {"memory", request.memory}};
+  for (const std::string& option : request.extra) wanted.emplace_back("extra", option);
+  wanted.insert(wanted.end(), job.begin(), job.end());
+  TRY(const auto seconds, ParseTimeLimit(request.time_limit));
+  if (IsRun(job_template)) {
+    values["SECONDS"] = std::to_string(seconds);
+    if (cluster.directives.contains("time_limit")) wanted.emplace_back("time_limit", values["SECONDS"]);
+  } else {
+    values["TIME"] = request.time_limit;
+  }
+  TRY(values["DIRECTIVES"], Directives(wanted, cluster));
   values["SETUP"] = request.setup;
-  values["TIME"] = request.time_limit;
-  values["MARGIN"] = std::to_string(SignalMargin(request.time_limit));
+  values["MARGIN"] = std::to_string(SignalMargin(seconds));
   TRY(CheckOneLine(values));
-  return Fill(job_template, values);
+  return Fill(Replaced(std::string(job_template), kRun, kRunJob), values);
 }
 
 }  // namespace
 
+std::string Replaced(std::string text, std::string_view name, std::string_view value) {
+  if (const std::size_t at = text.find(name); at != std::string::npos) text.replace(at, name.size(), value);
+  return text;
+}
+
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
-                                 const JobRequest& request) {
+                                 const JobRequest& request, const Cluster& cluster) {
+  const std::string slots = std::to_string(job.slots);
+  const std::string array = job.array > 1 ? std::to_string(job.array) : "";
+  if (IsRun(job_template)) {
+    return Script(
+        job_template,
+        {{"JOB_NAME", job.name},
+         {"STEM", "worker"},
+         {"LOGS", ShellQuoted(job.log_directory)},
+         {"COMMAND", job.worker + " --access " + ShellQuoted(job.access_file) + " --slots " + slots +
+                         " --allocation \"$job:0:$(uname -n)\""}},
+        request,
+        {{"workers_per_allocation", job.slots > 1 && cluster.hosts.empty() ? slots : ""}, {"array", array}},
+        cluster);
+  }
   // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
   JobRequest all = request;
-  if (job.array > 1) all.extra.push_back("--array=1-" + std::to_string(job.array));
   if (FillsNothingIn(job.log_directory)) all.extra.emplace_back("--open-mode=append");
   return Script(job_template,
                 {{"JOB_NAME", job.name},
-                 {"CPUS", std::to_string(job.slots)},
-                 {"SLOTS", std::to_string(job.slots)},
+                 {"CPUS", slots},
+                 {"SLOTS", slots},
                  {"LOG", LogFile(job.log_directory, "worker", job.array > 1 ? "-%A_%a" : "-%j")},
                  {"ACCESS", ShellQuoted(job.access_file)},
                  {"WORKER", job.worker}},
-                all);
+                all, {{"array", array}}, cluster);
 }
 
 Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
-                                 const JobRequest& request) {
+                                 const JobRequest& request, const Cluster& cluster) {
   std::string command;
   for (const std::string& argument : job.command)
     command += (command.empty() ? "" : " ") + ShellQuoted(argument);
-  return Script(
-      job_template,
-      {{"JOB_NAME", job.name}, {"LOG", LogFile(job.log_directory, "master-job", "-%j")}, {"MASTER", command}},
-      request);
+  Values values = {{"JOB_NAME", job.name}};
+  if (IsRun(job_template)) {
+    values.merge(
+        Values{{"STEM", "master-job"}, {"LOGS", ShellQuoted(job.log_directory)}, {"COMMAND", command}});
+  } else {
+    values.merge(Values{{"LOG", LogFile(job.log_directory, "master-job", "-%j")}, {"MASTER", command}});
+  }
+  return Script(job_template, values, request, {}, cluster);
 }
 
 }  // namespace gauntlet::slurm

@@ -1,4 +1,4 @@
-// The batch scripts that are handed to sbatch.
+// The batch scripts that are handed to sbatch and its like.
 #pragma once
 
 #include <string>
@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "base/result.h"
+#include "slurm/cluster.h"
 
 namespace gauntlet::slurm {
 
-// What a site or a user wants of their jobs; empty = Slurm's default.
+// What a site or a user wants of their jobs; empty = the cluster's default.
 struct JobRequest {
   std::string partition;
   std::string account;
@@ -17,7 +18,7 @@ struct JobRequest {
   std::string constraint;
   std::string memory;                   // per job, "2G"
   std::string time_limit = "01:00:00";  // of one allocation
-  std::vector<std::string> extra;       // further sbatch options, "--exclusive"
+  std::vector<std::string> extra;       // further options of submit, "--exclusive"
   std::string setup;                    // shell lines before the program, "module load zeromq"
 };
 
@@ -36,17 +37,21 @@ struct MasterJob {
   std::string log_directory;         // absolute
 };
 
+// `text` with `value` for the first `name` in it, "@NODES@".
+std::string Replaced(std::string text, std::string_view name, std::string_view value);
+
 // The shipped templates slurm/worker.sbatch and slurm/master.sbatch.
 extern const std::string_view kWorkerTemplate;
 extern const std::string_view kMasterTemplate;
 
+// In a template of another cluster @RUN@ stands for slurm/run_job.sh, which names the log by itself.
 // Paths may hold whatever a name may hold except line breaks. The log's name has the job's id in it, unless a
 // directory's name has a backslash: Slurm then fills nothing in, and all jobs append to one file.
-// Errors: a value that cannot stand in a directive (a line break), a template without a name that is needed
-// or with one that is not known.
+// Errors: a value that cannot stand in a directive (a line break), a setting for which the cluster has no
+// directive, a template without a name that is needed or with one that is not known.
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
-                                 const JobRequest& request);
+                                 const JobRequest& request, const Cluster& cluster = SlurmCluster());
 Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
-                                 const JobRequest& request);
+                                 const JobRequest& request, const Cluster& cluster = SlurmCluster());
 
 }  // namespace gauntlet::slurm

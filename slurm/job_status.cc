@@ -1,7 +1,6 @@
 #include "slurm/job_status.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <optional>
 #include <regex>
 
@@ -9,10 +8,6 @@
 
 namespace gauntlet::slurm {
 namespace {
-
-bool IsOneOf(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
-}
 
 // The text up to the separator, which is taken away with it.
 std::string_view TakeUntil(std::string_view& text, char separator) {
@@ -38,40 +33,34 @@ std::optional<long> SecondsOf(std::string_view text) {
 
 }  // namespace
 
-JobPhase PhaseOf(std::string_view state) {
-  if (IsOneOf(state, {"PENDING", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "SPECIAL_EXIT"}))
-    return JobPhase::kQueued;
-  if (IsOneOf(state, {"RUNNING", "CONFIGURING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING"}))
-    return JobPhase::kRunning;
-  if (IsOneOf(state, {"COMPLETING", "STAGE_OUT"})) return JobPhase::kEnding;
-  if (IsOneOf(state, {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "PREEMPTED", "BOOT_FAIL",
-                      "DEADLINE", "REVOKED", "OUT_OF_MEMORY"}))
-    return JobPhase::kEnded;
-  return JobPhase::kUnknown;
+JobPhase PhaseOf(std::string_view state, const Cluster& cluster) {
+  const auto row = cluster.states.find(std::string(state));
+  return row == cluster.states.end() ? JobPhase::kUnknown : row->second;
 }
 
-bool NeverStarts(std::string_view reason) {
-  return IsOneOf(reason, {"PartitionNodeLimit", "PartitionTimeLimit", "PartitionConfig", "BadConstraints",
-                          "DependencyNeverSatisfied", "JobHeldUser", "JobHeldAdmin", "InvalidAccount",
-                          "InvalidQOS", "AccountNotAllowed", "QOSNotAllowed", "JobLaunchFailure",
-                          "launch failed requeued held", "launch_failed_requeued_held"});
+bool NeverStarts(std::string_view word, const Cluster& cluster) {
+  return std::ranges::find(cluster.never_starts, word) != cluster.never_starts.end();
 }
 
-Result<std::vector<JobStatus>> ParseQueue(std::string_view text) {
+std::string ProgramOf(const std::string& command) {
+  static const std::regex kWord("[A-Za-z0-9_./-]+");
+  std::smatch match;
+  return std::regex_search(command, match, kWord) ? match.str() : command;
+}
+
+Result<std::vector<JobStatus>> ParseQueue(std::string_view text, const Cluster& cluster) {
   std::vector<JobStatus> jobs;
   while (!text.empty()) {
     const std::string_view line = Trimmed(TakeUntil(text, '\n'));
     if (line.empty()) continue;
-    constexpr auto kSeparators = 4;
-    if (std::count(line.begin(), line.end(), '|') < kSeparators) {
-      return Error{ErrorKind::kIo, "squeue printed '" + std::string(line.substr(0, 200)) +
-                                       "', which is not of the form " + std::string(kQueueFormat)};
-    }
+    if (std::ranges::count(line, '|') < std::ranges::count(kLookForm, '|'))
+      return Error{ErrorKind::kIo, ProgramOf(cluster.look) + " printed '" + std::string(line.substr(0, 200)) +
+                                       "', which is not of the form " + std::string(kLookForm)};
     std::string_view rest = line;
     JobStatus job;
     job.id = Trimmed(TakeUntil(rest, '|'));
     job.state = Trimmed(TakeUntil(rest, '|'));
-    job.phase = PhaseOf(job.state);
+    job.phase = PhaseOf(job.state, cluster);
     job.nodes = Trimmed(TakeUntil(rest, '|'));
     job.reason = Trimmed(TakeUntil(rest, '|'));
     if (job.reason == "None") job.reason.clear();
@@ -81,12 +70,13 @@ Result<std::vector<JobStatus>> ParseQueue(std::string_view text) {
   return jobs;
 }
 
-Result<std::string> ParseJobId(std::string_view text) {
-  const std::string_view id = Trimmed(text.substr(0, text.find(';')));
-  if (!id.empty() && std::all_of(id.begin(), id.end(), [](char c) { return c >= '0' && c <= '9'; }))
-    return std::string(id);
-  return Error{ErrorKind::kIo,
-               "sbatch answered '" + std::string(Trimmed(text.substr(0, 200))) + "' instead of a job id"};
+Result<std::string> ParseJobId(std::string_view text, const Cluster& cluster) {
+  std::cmatch match;
+  if (std::regex_search(text.data(), text.data() + text.size(), match, std::regex(cluster.job_id)) &&
+      match.length(1) > 0)
+    return match.str(1);
+  return Error{ErrorKind::kIo, ProgramOf(cluster.submit) + " answered '" +
+                                   std::string(Trimmed(text.substr(0, 200))) + "' instead of a job id"};
 }
 
 Result<long> ParseTimeLimit(std::string_view text) {

@@ -9,8 +9,8 @@ namespace {
 using std::chrono::duration_cast;
 using std::chrono::seconds;
 
-// A job that squeue has not shown this often in a row is gone: once may be a hiccup of a controller that has
-// just been restarted.
+// A job that the queue has not shown this often in a row is gone: once may be a hiccup of a controller that
+// has just been restarted.
 constexpr int kMissingBeforeEnd = 2;
 
 // What to look at when a job ends before its worker has spoken.
@@ -49,6 +49,7 @@ void PoolPolicy::Submitted(const std::string& job, TimePoint now) {
     entry->second.state = "PENDING";
   }
   query_error_.clear();
+  full_.clear();
   // Not seen by a query that was under way.
   last_query_ = now;
 }
@@ -57,6 +58,25 @@ void PoolPolicy::SubmissionFailed(const std::string& message, TimePoint now) {
   Allocation none;
   none.job = "(none)";
   StartFailed(none, message, now);
+}
+
+void PoolPolicy::Full(const std::string& message, TimePoint now) {
+  full_ = message;
+  not_before_ = now + limits_.query_interval;
+}
+
+void PoolPolicy::Hopeless(const std::string& message) {
+  if (cluster_.give_up_after > 0) hopeless_ = message;
+}
+
+std::string PoolPolicy::GivenUp() const {
+  const bool connected =
+      std::ranges::any_of(allocations_, [](const auto& entry) { return entry.second.workers > 0; });
+  if (!hopeless_.empty() && !connected) return hopeless_;
+  if (heard_any_ || cluster_.give_up_after == 0 || failures_in_a_row_ < cluster_.give_up_after) return "";
+  return "gave up after " + std::to_string(failures_in_a_row_) +
+         (failures_in_a_row_ == 1 ? " failed start" : " failed starts in a row") +
+         ", without a word from any worker; the last: " + last_failure_;
 }
 
 void PoolPolicy::Adopt(const JobStatus& job, TimePoint now) {
@@ -91,7 +111,8 @@ void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePo
   Allocation& allocation = found->second;
   allocation.workers = connected;
   if (connected > 0) {
-    // A hello is faster than squeue.
+    heard_any_ = true;
+    // A hello is faster than a look at the queue.
     if (!allocation.running_since) allocation.running_since = now;
     if (allocation.phase == JobPhase::kQueued) {
       allocation.phase = JobPhase::kRunning;
@@ -146,8 +167,10 @@ void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
   for (auto& [job, allocation] : allocations_) {
     if (allocation.cancelled) continue;
     if (!stopping_) {
-      if (allocation.phase == JobPhase::kQueued && NeverStarts(allocation.reason)) {
-        StartFailed(allocation, "job " + job + " would never start: " + allocation.reason, now);
+      const bool never = NeverStarts(allocation.reason, cluster_) || NeverStarts(allocation.state, cluster_);
+      if (allocation.phase == JobPhase::kQueued && never) {
+        const std::string& why = allocation.reason.empty() ? allocation.state : allocation.reason;
+        StartFailed(allocation, "job " + job + " would never start: " + why, now);
       } else if (allocation.silent_since && now - *allocation.silent_since >= limits_.start_timeout) {
         const auto silent = duration_cast<seconds>(now - *allocation.silent_since);
         StartFailed(allocation,
@@ -217,7 +240,7 @@ std::vector<Allocation> PoolPolicy::allocations() const {
 }
 
 std::string PoolPolicy::Trouble(TimePoint now) const {
-  if (!query_error_.empty()) return "Slurm does not answer: " + query_error_;
+  if (!query_error_.empty()) return cluster_.name + " does not answer: " + query_error_;
   if (failures_in_a_row_ > 0) {
     std::string text = std::to_string(failures_in_a_row_) +
                        (failures_in_a_row_ == 1 ? " start has failed: " : " starts in a row have failed: ") +
@@ -228,6 +251,7 @@ std::string PoolPolicy::Trouble(TimePoint now) const {
     }
     return text;
   }
+  if (!full_.empty()) return full_;
   int connected = 0;
   std::string waiting;
   for (const auto& [job, allocation] : allocations_) {

@@ -1,4 +1,5 @@
-// How many worker allocations a campaign should have in Slurm, and which of them should go: decisions only.
+// How many worker allocations a campaign should have in a cluster, and which of them should go: decisions
+// only.
 #pragma once
 
 #include <chrono>
@@ -6,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/system/clock.h"
@@ -36,7 +38,7 @@ struct Decisions {
   int submit = 0;                          // allocations to ask for
   std::vector<std::string> cancel;         // job ids
   std::vector<std::string> exclude_nodes;  // of what is submitted now
-  bool query = false;                      // ask squeue
+  bool query = false;                      // look
 };
 
 // One allocation as the pool sees it; it was `cancelled` by us.
@@ -53,21 +55,26 @@ struct Allocation : AllocationView {
 // Fed with events and a clock, asked for decisions; pure, so that years of a cluster's moods run in a test in
 // milliseconds. An allocation counts as coming capacity until its worker connects, it ends or its start times
 // out. A start has failed when the job ended, or ran for `start_timeout`, without a worker's hello, or when
-// it failed (Slurm's FAILED, NODE_FAIL, OUT_OF_MEMORY, BOOT_FAIL) within `early_loss` of it; failures in a
+// it failed (FAILED, NODE_FAIL, OUT_OF_MEMORY, BOOT_FAIL) within `early_loss` of it; failures in a
 // row delay the next submission, and a node with several is left out until a worker has said hello from it.
 // Drained, preempted and timed out jobs are replaced at once. Thread-safety: one thread.
 class PoolPolicy {
  public:
-  explicit PoolPolicy(const PoolLimits& limits) : limits_(limits) {}
+  explicit PoolPolicy(const PoolLimits& limits, Cluster cluster = SlurmCluster())
+      : limits_(limits), cluster_(std::move(cluster)) {}
 
   void Submitted(const std::string& job, TimePoint now);
-  // Slurm refused, or did not answer.
+  // The cluster refused, or did not answer.
   void SubmissionFailed(const std::string& message, TimePoint now);
+  // There was no room: no failure, to be tried again.
+  void Full(const std::string& message, TimePoint now);
+  // Nothing that is submitted will ever start.
+  void Hopeless(const std::string& message);
   // A job of an earlier master that is still there.
   void Adopt(const JobStatus& job, TimePoint now);
-  // All jobs of this pool that Slurm knows. One that is missing twice in a row has ended.
+  // All jobs of this pool that the cluster knows. One that is missing twice in a row has ended.
   void Observed(const std::vector<JobStatus>& jobs, TimePoint now);
-  // Slurm did not answer: what was known stands.
+  // The cluster did not answer: what was known stands.
   void QueryFailed(const std::string& message, TimePoint now);
   // How many workers of the allocation are connected, and how many of them have a run.
   void Workers(const std::string& job, int connected, int busy, TimePoint now);
@@ -77,8 +84,10 @@ class PoolPolicy {
   Decisions Decide(const Demand& demand, TimePoint now);
 
   std::vector<Allocation> allocations() const;
-  // Why there are fewer workers than could be used, in a sentence with Slurm's own words; "" when all is
-  // well.
+  // Why the master should end, for nothing that it asks for ever starts; "" when it should not.
+  std::string GivenUp() const;
+  // Why there are fewer workers than could be used, in a sentence with the cluster's own words; "" when all
+  // is well.
   std::string Trouble(TimePoint now) const;
 
  private:
@@ -90,12 +99,16 @@ class PoolPolicy {
   void CancelIdle(const Demand& demand, TimePoint now, Decisions& decisions);
 
   PoolLimits limits_;
+  Cluster cluster_;
   Allocations allocations_;
   std::map<std::string, int> failures_of_node_;
   std::set<std::string> banned_;
   int failures_in_a_row_ = 0;
   std::string last_failure_;
   std::string query_error_;
+  std::string full_;
+  std::string hopeless_;
+  bool heard_any_ = false;               // a worker, ever
   std::optional<TimePoint> not_before_;  // back-off
   std::optional<TimePoint> last_query_;
   std::optional<TimePoint> unwanted_since_;  // no run has been unfinished since

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "base/system/regular_file.h"
 #include "base/system/trusted_path.h"
 #include "slurm/slurm_pool.h"
+#include "slurm/ssh_hosts.h"
 
 namespace gauntlet::slurm {
 namespace {
@@ -57,9 +59,11 @@ SlurmCampaign::SlurmCampaign(SlurmSettings settings, std::string directory)
 
 Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const std::string& directory) {
   std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::weakly_canonical(directory, error);
+  const std::filesystem::path absolute =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(directory), error);
   if (error) return SystemError(fmt::format("cannot find {}", directory), error.value());
   SlurmCampaign campaign(settings, absolute.string());
+  TRY(campaign.cluster_, FindCluster(settings.cluster));
   TRY(campaign.MakeScripts());
   return campaign;
 }
@@ -87,11 +91,17 @@ WorkerJob SlurmCampaign::WorkersJob() const {
           .slots = settings_.pool.workers_per_allocation};
 }
 
-Status SlurmCampaign::MakeScripts() {
-  TRY(worker_template_, Template(settings_.worker_template, kWorkerTemplate, "worker_template"));
-  TRY(worker_script_, WorkerScript(worker_template_, WorkersJob(), settings_.worker_job));
+std::string_view SlurmCampaign::ShippedTemplate(std::string_view of_slurm) const {
+  return cluster_.script == kSlurmScripts ? of_slurm : std::string_view(cluster_.script);
+}
 
-  TRY(const auto master_template, Template(settings_.master_template, kMasterTemplate, "master_template"));
+Status SlurmCampaign::MakeScripts() {
+  TRY(worker_template_,
+      Template(settings_.worker_template, ShippedTemplate(kWorkerTemplate), "worker_template"));
+  TRY(worker_script_, WorkerScript(worker_template_, WorkersJob(), settings_.worker_job, cluster_));
+
+  TRY(const auto master_template,
+      Template(settings_.master_template, ShippedTemplate(kMasterTemplate), "master_template"));
   // Of what the workers ask for, the master needs the account and the software.
   JobRequest request;
   request.account = settings_.worker_job.account;
@@ -105,17 +115,30 @@ Status SlurmCampaign::MakeScripts() {
                    {.name = master_job_name(),
                     .command = {MasterProgramPath(), "resume", directory_, "--as-job", "--no-progress"},
                     .log_directory = directory_ + "/log"},
-                   request));
+                   request, cluster_));
   return Ok{};
 }
 
 std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<SlurmClient> client) const {
   SlurmPoolOptions options;
   options.limits = settings_.pool;
+  options.cluster = cluster_;
+  if (!cluster_.hosts.empty()) {
+    // Nothing waits there, and more than there is room for would only be refused.
+    const int room = SshHosts(cluster_, settings_.pool.workers_per_allocation).room();
+    options.limits.max_allocations = options.limits.max_queued =
+        std::min(options.limits.max_allocations, room);
+  }
   options.request = settings_.worker_job;
   options.job_template = worker_template_;
   options.job = WorkersJob();
   return std::make_unique<SlurmPool>(std::move(options), std::move(client));
+}
+
+std::unique_ptr<SlurmClient> SlurmCampaign::MakeClient() const {
+  if (!cluster_.hosts.empty())
+    return std::make_unique<SshHosts>(cluster_, settings_.pool.workers_per_allocation);
+  return std::make_unique<CommandLineSlurm>(cluster_);
 }
 
 Result<std::vector<JobStatus>> SlurmCampaign::LivingJobs(SlurmClient& client) const {

@@ -1,5 +1,5 @@
-// A campaign directory as Slurm's jobs see it: their names, their scripts, and which of a user's jobs belong
-// to the campaign.
+// A campaign directory as a cluster's jobs see it: their names, their scripts, and which of a user's jobs
+// belong to the campaign.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,17 @@ namespace gauntlet::slurm {
 
 class SlurmCampaign {
  public:
-  // `directory` need not exist yet. Error: a template of the site cannot be read, or does not give a script.
+  // `directory` need not exist yet. Error: the cluster is unknown, a template of the site cannot be read, or
+  // does not give a script.
   static Result<SlurmCampaign> Make(const SlurmSettings& settings, const std::string& directory);
   // The campaign in `directory` as it was submitted, from its slurm.toml, which says what jobs execute;
   // nothing when it was not. Error: also when somebody else could have written that file.
   static Result<std::optional<SlurmCampaign>> Find(const std::string& directory);
 
   const SlurmSettings& settings() const { return settings_; }
+  const Cluster& cluster() const { return cluster_; }
+  // What speaks to the cluster.
+  std::unique_ptr<SlurmClient> MakeClient() const;
   // All jobs of the campaign have names that begin so. Made of the settings' tag and the directory's absolute
   // path: a copy of the directory has other jobs than its original.
   const std::string& job_prefix() const { return job_prefix_; }
@@ -31,9 +35,9 @@ class SlurmCampaign {
   const std::string& worker_script() const { return worker_script_; }
   const std::string& master_script() const { return master_script_; }
 
-  // This user's jobs of the campaign that Slurm has not ended yet.
+  // This user's jobs of the campaign that have not ended yet.
   Result<std::vector<JobStatus>> LivingJobs(SlurmClient& client) const;
-  // Cancels what Slurm still has of the campaign; the answer is the ids of what was cancelled.
+  // Cancels what the cluster still has of the campaign; the answer is the ids of what was cancelled.
   Result<std::vector<std::string>> CancelJobs(SlurmClient& client) const;
   // The pool of the campaign's workers.
   std::unique_ptr<WorkerPool> MakePool(std::unique_ptr<SlurmClient> client) const;
@@ -42,8 +46,10 @@ class SlurmCampaign {
   SlurmCampaign(SlurmSettings settings, std::string directory);
   Status MakeScripts();
   WorkerJob WorkersJob() const;
+  std::string_view ShippedTemplate(std::string_view of_slurm) const;
 
   SlurmSettings settings_;
+  Cluster cluster_;
   std::string directory_;  // absolute
   std::string job_prefix_;
   std::string worker_template_;

@@ -1,9 +1,9 @@
 #include "slurm/slurm_client.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <sstream>
-
-#include "base/system/process_call.h"
 
 namespace gauntlet::slurm {
 namespace {
@@ -28,28 +28,21 @@ bool Inherits(std::string_view variable) {
          !(variable.starts_with("SLURM_") || variable.starts_with("SBATCH_"));
 }
 
-Result<CallOutput> CallSlurm(const std::vector<std::string>& arguments, std::string_view input,
-                             std::chrono::milliseconds deadline) {
-  CallOptions options;
-  options.deadline = deadline;
-  options.inherits = Inherits;
-  Result<CallOutput> output = CallProcess(arguments, input, options);
-  if (output || output.error().kind != ErrorKind::kNotFound) return output;
-  return Error{ErrorKind::kNotFound,
-               output.error().message + " in PATH: is Slurm installed on this machine?"};
-}
-
-Error Refusal(const std::string& program, const CallOutput& output) {
+Error Refusal(const std::string& command, const CallOutput& output) {
+  const std::string program = ProgramOf(command);
   return {ErrorKind::kInvalidInput, program + " refused (exit code " + std::to_string(output.exit_code) +
                                         "): " + WordsOf(program, output.err + output.out)};
 }
 
-std::vector<std::string> Sbatch(const std::vector<std::string>& own,
-                                const std::vector<std::string>& options) {
-  std::vector<std::string> arguments = {"sbatch"};
-  arguments.insert(arguments.end(), own.begin(), own.end());
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  return arguments;
+Error Silence(const std::string& command, const CallOutput& output) {
+  const std::string program = ProgramOf(command);
+  return {ErrorKind::kIo, program + ": " + WordsOf(program, output.err + output.out)};
+}
+
+// Whether the id that the queue shows is this job, or a task of it.
+bool IsOf(const std::string& job, const std::string& id) {
+  return id.starts_with(job) &&
+         (id.size() == job.size() || std::isdigit(static_cast<unsigned char>(id[job.size()])) == 0);
 }
 
 // sbatch --test-only asks the controller twice: an absent one costs it 18 s (seen with 22.05).
@@ -97,38 +90,65 @@ std::string NextStep(std::string_view words) {
   return "";
 }
 
+Result<CallOutput> CallCluster(const std::string& command, const std::vector<std::string>& arguments,
+                               std::string_view input, std::chrono::milliseconds deadline) {
+  CallOptions options;
+  options.deadline = deadline;
+  options.inherits = Inherits;
+  std::vector<std::string> line = {"/bin/bash", "-o", "pipefail", "-c", command, ProgramOf(command)};
+  line.insert(line.end(), arguments.begin(), arguments.end());
+  return CallProcess(line, input, options);
+}
+
+// With the scheduler's own words for its absence.
+Result<CallOutput> CommandLineSlurm::Call(const std::string& command,
+                                          const std::vector<std::string>& arguments, std::string_view input,
+                                          std::chrono::milliseconds deadline) const {
+  Result<CallOutput> output = CallCluster(command, arguments, input, deadline);
+  constexpr int kNoSuchProgram = 127;
+  if (!output || output->exit_code != kNoSuchProgram) return output;
+  return Error{ErrorKind::kNotFound, "there is no " + ProgramOf(command) + " in PATH: is " + cluster_.name +
+                                         " installed on this machine?"};
+}
+
 Result<std::string> CommandLineSlurm::Submit(const std::string& script,
                                              const std::vector<std::string>& options) {
-  TRY(const auto output, CallSlurm(Sbatch({"--parsable"}, options), script, deadline_));
-  if (output.exit_code != 0) return Refusal("sbatch", output);
-  return ParseJobId(output.out);
+  TRY(const auto output, Call(cluster_.submit, options, script, deadline_));
+  if (output.exit_code != 0) return Refusal(cluster_.submit, output);
+  Result<std::string> job = ParseJobId(output.out, cluster_);
+  if (job) submitted_.push_back(*job);
+  return job;
 }
 
 Result<std::string> CommandLineSlurm::TestOnly(const std::string& script,
                                                const std::vector<std::string>& options) {
-  TRY(const auto output, CallSlurm(Sbatch({"--test-only"}, options), script, kTestOnlyCalls * deadline_));
-  if (output.exit_code != 0) return Refusal("sbatch", output);
-  return WordsOf("sbatch", output.err + output.out);
+  if (cluster_.test.empty()) return std::string();
+  TRY(const auto output, Call(cluster_.test, options, script, kTestOnlyCalls * deadline_));
+  if (output.exit_code != 0) return Refusal(cluster_.test, output);
+  return WordsOf(ProgramOf(cluster_.test), output.err + output.out);
 }
 
 Result<std::vector<JobStatus>> CommandLineSlurm::Queue(const std::string& name_prefix) {
-  TRY(const auto output, CallSlurm({"squeue", "--me", "--noheader", "--array", "--states=all",
-                                    "--format=" + std::string(kQueueFormat)},
-                                   "", deadline_));
-  if (output.exit_code != 0)
-    return Error{ErrorKind::kIo, "squeue: " + WordsOf("squeue", output.err + output.out)};
-  Result<std::vector<JobStatus>> jobs = ParseQueue(output.out);
-  if (jobs) std::erase_if(*jobs, [&](const JobStatus& job) { return !job.name.starts_with(name_prefix); });
+  TRY(const auto output, Call(cluster_.look, {}, "", deadline_));
+  if (output.exit_code != 0) return Silence(cluster_.look, output);
+  Result<std::vector<JobStatus>> jobs = ParseQueue(output.out, cluster_);
+  if (!jobs) return jobs;
+  for (const JobStatus& job : *jobs) {
+    if (job.name.starts_with(name_prefix)) continue;
+    // A job of ours without our name is one whose name was cut: another master would never find it.
+    if (std::ranges::any_of(submitted_, [&](const std::string& id) { return IsOf(id, job.id); }))
+      return Error{ErrorKind::kIo, ProgramOf(cluster_.look) + " gives job " + job.id + " the name '" +
+                                       job.name + "', not " + name_prefix +
+                                       "...: `look` has to print whole names"};
+  }
+  std::erase_if(*jobs, [&](const JobStatus& job) { return !job.name.starts_with(name_prefix); });
   return jobs;
 }
 
 Status CommandLineSlurm::Cancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return Ok{};
-  std::vector<std::string> arguments = {"scancel"};
-  arguments.insert(arguments.end(), jobs.begin(), jobs.end());
-  TRY(const auto output, CallSlurm(arguments, "", deadline_));
-  if (output.exit_code != 0)
-    return Error{ErrorKind::kIo, "scancel: " + WordsOf("scancel", output.err + output.out)};
+  TRY(const auto output, Call(cluster_.cancel, jobs, "", deadline_));
+  if (output.exit_code != 0) return Silence(cluster_.cancel, output);
   return Ok{};
 }
 

@@ -1,23 +1,26 @@
-// The few things Gauntlet asks of Slurm, and the commands that do them.
+// The few things Gauntlet asks of a scheduler, Slurm or another, and the commands that do them.
 #pragma once
 
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
+#include "base/system/process_call.h"
 #include "slurm/job_status.h"
 
 namespace gauntlet::slurm {
 
-// Errors carry Slurm's own words. Calls block; each is bounded in time.
+// Errors carry the scheduler's own words. Calls block; each is bounded in time.
 class SlurmClient {
  public:
   virtual ~SlurmClient() = default;
-  // `script` goes to sbatch with `options` before it; the answer is the job's id (of an array, the array's).
+  // `options` go to the command that gets the script; the answer is the job's id (of an array, the array's).
+  // Errors: kInUse when there is no room just now, kNotFound when there never will be.
   virtual Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) = 0;
-  // What sbatch --test-only says: when and where the job could start. Error: why it never could.
+  // When and where the job could start, "" when that cannot be asked. Error: why it never could.
   virtual Result<std::string> TestOnly(const std::string& script,
                                        const std::vector<std::string>& options) = 0;
   // This user's jobs whose name begins with `name_prefix`.
@@ -26,14 +29,16 @@ class SlurmClient {
   virtual Status Cancel(const std::vector<std::string>& jobs) = 0;
 };
 
-// What a person can do about Slurm's words, as "; do this"; "" when nothing is known.
+// What a person can do about a scheduler's words, as "; do this"; "" when nothing is known.
 std::string NextStep(std::string_view words);
 
+// By the commands of a cluster.
 class CommandLineSlurm final : public SlurmClient {
  public:
   // An absent controller costs a Slurm command about 9 s before it says so.
-  explicit CommandLineSlurm(std::chrono::milliseconds deadline = std::chrono::seconds(15))
-      : deadline_(deadline) {}
+  explicit CommandLineSlurm(Cluster cluster = SlurmCluster(),
+                            std::chrono::milliseconds deadline = std::chrono::seconds(15))
+      : cluster_(std::move(cluster)), deadline_(deadline) {}
 
   Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override;
   Result<std::string> TestOnly(const std::string& script, const std::vector<std::string>& options) override;
@@ -41,7 +46,16 @@ class CommandLineSlurm final : public SlurmClient {
   Status Cancel(const std::vector<std::string>& jobs) override;
 
  private:
+  Result<CallOutput> Call(const std::string& command, const std::vector<std::string>& arguments,
+                          std::string_view input, std::chrono::milliseconds deadline) const;
+
+  Cluster cluster_;
   std::chrono::milliseconds deadline_;
+  std::vector<std::string> submitted_;  // ids
 };
+
+// A command of a cluster, with arguments, in bash: fails as the first program of a pipe that does.
+Result<CallOutput> CallCluster(const std::string& command, const std::vector<std::string>& arguments,
+                               std::string_view input, std::chrono::milliseconds deadline);
 
 }  // namespace gauntlet::slurm

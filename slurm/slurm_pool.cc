@@ -6,19 +6,22 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "base/check.h"
 #include "base/number_text.h"
+#include "base/split.h"
+#include "base/system/regular_file.h"
 
 namespace gauntlet::slurm {
 
 SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> client)
     : options_(std::move(options)),
       client_(std::move(client)),
-      policy_(options_.limits),
+      policy_(options_.limits, options_.cluster),
       answer_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   GAUNTLET_CHECK(answer_fd_.valid(), "no eventfd can be had");
-  thread_ = std::thread([this] { CallSlurm(); });
+  thread_ = std::thread([this] { CallCluster(); });
 }
 
 SlurmPool::~SlurmPool() {
@@ -56,7 +59,7 @@ void SlurmPool::Post(Task task) {
 }
 
 // The thread: one call after the other, until there are none and the pool is leaving.
-void SlurmPool::CallSlurm() {
+void SlurmPool::CallCluster() {
   while (true) {
     Task task;
     {
@@ -106,49 +109,71 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
     if (!trouble.empty() && words(trouble) != words(reported_trouble_)) Report(trouble);
     reported_trouble_ = std::move(trouble);
   }
+  if (const std::string why = policy_.GivenUp(); !why.empty())
+    return Error{ErrorKind::kIo, why + NextStep(why)};
   return std::vector<pid_t>{};
 }
 
 void SlurmPool::CarryOut(const Decisions& decisions) {
   PostCancel(decisions.cancel);
-  if (decisions.submit > submitting_) PostSubmit(decisions.submit - submitting_, decisions.exclude_nodes);
+  if (decisions.submit > submitting_) Submit(decisions.submit - submitting_, decisions.exclude_nodes);
   if (decisions.query) PostQuery();
+}
+
+// Equal ones as an array, where there are arrays.
+void SlurmPool::Submit(int allocations, const std::vector<std::string>& excluded_nodes) {
+  const bool arrays = !options_.cluster.task_id.empty();
+  for (int i = 0; i < (arrays ? 1 : allocations); ++i) PostSubmit(arrays ? allocations : 1, excluded_nodes);
+}
+
+// The options of `exclude`, which stand apart by blanks.
+std::vector<std::string> SlurmPool::Exclusion(const std::vector<std::string>& nodes) const {
+  std::vector<std::string> options;
+  if (nodes.empty()) return options;
+  std::istringstream words(options_.cluster.exclude);
+  for (std::string word; words >> word;)
+    options.push_back(
+        Replaced(word, "@NODES@", fmt::format("{}", fmt::join(nodes, options_.cluster.node_separator))));
+  return options;
 }
 
 void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes) {
   WorkerJob job = options_.job;
   job.name += fmt::format("{}", next_number_++);
   job.array = allocations;
-  const Result<std::string> script = WorkerScript(options_.job_template, job, options_.request);
+  const Result<std::string> script =
+      WorkerScript(options_.job_template, job, options_.request, options_.cluster);
   GAUNTLET_CHECK(script.ok(), "the worker script was checked when the campaign began");
-  std::vector<std::string> arguments;
-  if (!excluded_nodes.empty())
-    arguments.push_back(fmt::format("--exclude={}", fmt::join(excluded_nodes, ",")));
   submitting_ += allocations;
-  Post([this, text = *script, arguments, allocations]() -> std::function<void(TimePoint)> {
+  Post([this, text = *script, arguments = Exclusion(excluded_nodes),
+        allocations]() -> std::function<void(TimePoint)> {
     return [this, id = client_->Submit(text, arguments), allocations](TimePoint now) {
       submitting_ -= allocations;
       if (id) {
         if (allocations == 1) policy_.Submitted(*id, now);
         for (int task = 1; allocations > 1 && task <= allocations; ++task)
-          policy_.Submitted(fmt::format("{}_{}", *id, task), now);
+          policy_.Submitted(
+              Replaced(Replaced(options_.cluster.task_id, "@JOB@", *id), "@TASK@", fmt::format("{}", task)),
+              now);
         Report(fmt::format("job {} submitted: {} of {}", *id, Counted(allocations, "allocation"),
                            Counted(options_.job.slots, "slot")));
-      } else {
-        policy_.SubmissionFailed(id.error().message, now);
-        // It may have been accepted all the same: look before the next one.
-        adopted_ = false;
+        return;
       }
+      if (id.error().kind == ErrorKind::kInUse) return policy_.Full(id.error().message, now);
+      if (id.error().kind == ErrorKind::kNotFound) policy_.Hopeless(id.error().message);
+      policy_.SubmissionFailed(id.error().message, now);
+      // It may have been accepted all the same: look before the next one.
+      adopted_ = false;
     };
   });
 }
 
 void SlurmPool::PostQuery() {
   Post([this]() -> std::function<void(TimePoint)> {
-    return [this, jobs = client_->Queue(options_.job.name)](TimePoint now) {
+    return [this, jobs = client_->Queue(options_.job.name)](TimePoint now) mutable {
       adopting_ = false;
       if (jobs) {
-        OnQueue(*jobs, now);
+        OnQueue(std::move(*jobs), now);
       } else {
         policy_.QueryFailed(jobs.error().message, now);
       }
@@ -169,7 +194,21 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   });
 }
 
-void SlurmPool::OnQueue(const std::vector<JobStatus>& jobs, TimePoint now) {
+// A job that the queue does not show has left its exit code (slurm/run_job.sh), if it came to its end.
+void SlurmPool::AddEnds(std::vector<JobStatus>& jobs) const {
+  for (const Allocation& allocation : policy_.allocations()) {
+    if (std::ranges::count(jobs, allocation.job, &JobStatus::id) > 0) continue;
+    const Result<std::string> code =
+        ReadRegularFile(fmt::format("{}/{}.exit", options_.job.log_directory, allocation.job));
+    if (!code) continue;
+    const std::string_view digits = Trimmed(*code);
+    jobs.push_back({allocation.job, "", digits == "0" ? "COMPLETED" : "FAILED", JobPhase::kEnded,
+                    fmt::format("exit code {}", digits), ""});
+  }
+}
+
+void SlurmPool::OnQueue(std::vector<JobStatus> jobs, TimePoint now) {
+  AddEnds(jobs);
   adopted_ = true;
   const std::set<std::string> cancelled(cancelled_.begin(), cancelled_.end());
   std::set<std::string> known = cancelled;

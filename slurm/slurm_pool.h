@@ -1,4 +1,4 @@
-// A pool of worker allocations in Slurm: carries out what PoolPolicy decides.
+// A pool of worker allocations in a cluster: carries out what PoolPolicy decides.
 #pragma once
 
 #include <condition_variable>
@@ -24,14 +24,15 @@ namespace gauntlet::slurm {
 struct SlurmPoolOptions {
   PoolLimits limits;
   JobRequest request;
+  Cluster cluster = SlurmCluster();
   std::string job_template;  // of workers
   // `job.name` is the prefix of the jobs' names, unique to the campaign: whatever bears it is this
   // campaign's, also after a crash and when the answer of a submission was lost.
   WorkerJob job;
 };
 
-// Slurm's commands take from milliseconds to many seconds, so a thread of the pool's own calls them; all
-// methods return at once and belong to one thread. Jobs with the campaign's name that this pool did not
+// A scheduler's commands take from milliseconds to many seconds, so a thread of the pool's own calls them;
+// all methods return at once and belong to one thread. Jobs with the campaign's name that this pool did not
 // submit (of an earlier master, or of a submission whose answer was lost) are adopted.
 class SlurmPool final : public WorkerPool {
  public:
@@ -42,13 +43,14 @@ class SlurmPool final : public WorkerPool {
   SlurmPool(const SlurmPool&) = delete;
   SlurmPool& operator=(const SlurmPool&) = delete;
 
-  // Never an error: a cluster that starts nothing today may do so tomorrow; Trouble says what is wrong.
+  // A cluster that starts nothing today may do so tomorrow; Trouble says what is wrong. Error: PoolPolicy has
+  // given up.
   Result<std::vector<pid_t>> Supervise(TimePoint now) override;
   void AppendWaitFds(std::vector<int>& fds) const override { fds.push_back(answer_fd_.get()); }
   // Allocations that are not yet cancelled or ended.
   int running() const override;
   void StopReplacing() override { stopped_growing_ = true; }
-  // Any signal: cancels all allocations; Slurm sends SIGTERM, then SIGKILL.
+  // Any signal: cancels all allocations; the cluster sends SIGTERM, then SIGKILL.
   void SignalAll(int signal) override;
   std::vector<DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }
   void Observe(const PoolView& view, TimePoint now) override;
@@ -61,14 +63,17 @@ class SlurmPool final : public WorkerPool {
   using Task = std::function<std::function<void(TimePoint)>()>;  // a call; then what its answer means
 
   void Post(Task task);
-  void CallSlurm();
+  void CallCluster();
   void TakeAnswers(TimePoint now);
   void CarryOut(const Decisions& decisions);
+  void Submit(int allocations, const std::vector<std::string>& excluded_nodes);
   void PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes);
+  std::vector<std::string> Exclusion(const std::vector<std::string>& nodes) const;
   void PostQuery();
   void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
-  void OnQueue(const std::vector<JobStatus>& jobs, TimePoint now);
+  void OnQueue(std::vector<JobStatus> jobs, TimePoint now);
+  void AddEnds(std::vector<JobStatus>& jobs) const;
   void Report(std::string text) { events_.push_back({event::kSlurm, std::move(text)}); }
 
   SlurmPoolOptions options_;
@@ -82,7 +87,7 @@ class SlurmPool final : public WorkerPool {
   std::optional<TimePoint> last_query_;
   int submitting_ = 0;  // submissions under way
   std::uint64_t next_number_ = 1;
-  std::vector<std::string> cancelled_;  // still shown by Slurm for a while
+  std::vector<std::string> cancelled_;  // still in the queue for a while
   std::string reported_trouble_;
   std::vector<DispatchEvent> events_;
 

@@ -58,7 +58,7 @@ SlurmKey ExtraKey() {
   SlurmKey key;
   key.path = "extra";
   key.type = KeyType::kText;
-  key.description = "further sbatch options, \"--exclusive --mail-type=FAIL\"";
+  key.description = "further options of the scheduler, \"--exclusive --mail-type=FAIL\"";
   key.get = [](const SlurmSettings& settings) -> KeyValue {
     return fmt::format("{}", fmt::join(settings.worker_job.extra, " "));
   };
@@ -72,6 +72,7 @@ std::vector<SlurmKey> MakeKeys() {
   using S = SlurmSettings;
   constexpr double kDay = 86400;
   std::vector<SlurmKey> keys = {
+      Text<&S::cluster>("cluster", "slurm, sge, pbs, or the path of a cluster file (docs/clusters.md)"),
       JobText<&JobRequest::partition>("partition", "partition of the worker jobs"),
       JobText<&JobRequest::account>("account", "account that is charged"),
       JobText<&JobRequest::qos>("qos", "quality of service"),
@@ -87,12 +88,15 @@ std::vector<SlurmKey> MakeKeys() {
                                        "an allocation with nothing to do is given back after this, s"),
       Limit<&PoolLimits::start_timeout>("start_timeout", 5, kDay,
                                         "from a job's start to its worker's hello, s"),
-      Limit<&PoolLimits::query_interval>("query_interval", 1, 3600, "at most one squeue in this time, s"),
+      Limit<&PoolLimits::query_interval>("query_interval", 1, 3600,
+                                         "the queue is looked at once in this time at most, s"),
       Text<&S::worker_command>(
           "worker_command",
           "what starts a worker on a node; default: the gauntlet-worker beside this program"),
-      Text<&S::worker_template>("worker_template", "path of an edited copy of slurm/worker.sbatch"),
-      Text<&S::master_template>("master_template", "path of an edited copy of slurm/master.sbatch"),
+      Text<&S::worker_template>(
+          "worker_template", "path of an edited copy of slurm/worker.sbatch, or of another cluster's script"),
+      Text<&S::master_template>(
+          "master_template", "path of an edited copy of slurm/master.sbatch, or of another cluster's script"),
       TimeLimit<&S::master_time_limit>("master_time_limit", "of the master's job"),
       Text<&S::master_partition>("master_partition",
                                  "partition of the master's job; default: that of the workers"),
@@ -148,7 +152,7 @@ Result<SlurmSettings> ReadSlurmSettings(const std::vector<SlurmSource>& files,
 }
 
 std::string WriteSlurmSettings(const SlurmSettings& settings) {
-  std::string text = "# How this campaign uses Slurm; `gauntlet resume` reads it.\n";
+  std::string text = "# How this campaign uses its cluster; `gauntlet resume` reads it.\n";
   for (const SlurmKey& key : SlurmKeys()) text += LineOf(key.path, key, key.get(settings));
   return text;
 }

@@ -1,4 +1,5 @@
-// How a campaign uses Slurm: the [slurm] table of an experiment, the user's own file and --slurm, one schema.
+// How a campaign uses a cluster: the [slurm] table of an experiment, the user's own file and --slurm, one
+// schema.
 #pragma once
 
 #include <string>
@@ -15,10 +16,11 @@ namespace gauntlet::slurm {
 enum class MasterPlace { kJob, kHere };
 
 struct SlurmSettings {
+  std::string cluster = "slurm";  // as FindCluster takes it
   JobRequest worker_job;
   PoolLimits pool;
   std::string worker_command;   // as the shell is to read it; "" = gauntlet-worker beside this program
-  std::string worker_template;  // path of an edited slurm/worker.sbatch; "" = the shipped one
+  std::string worker_template;  // path of an edited slurm/worker.sbatch; "" = the cluster's
   std::string master_template;
   std::string master_time_limit = "7-00:00:00";
   std::string master_partition;  // "" = that of the workers

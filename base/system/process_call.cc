@@ -84,8 +84,9 @@ bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput
   return true;
 }
 
-// Waits for the child until the deadline, then kills it. False when it had to be killed.
-bool Reap(pid_t child, Clock::time_point deadline, int& status) {
+// Waits for the child until the deadline, then kills it, or the group that it leads with all that it started.
+// False when it had to be killed.
+bool Reap(pid_t child, bool leads_group, Clock::time_point deadline, int& status) {
   constexpr int kPollMilliseconds = 5;
   while (true) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
@@ -93,7 +94,7 @@ bool Reap(pid_t child, Clock::time_point deadline, int& status) {
     if (Clock::now() >= deadline) break;
     poll(nullptr, 0, kPollMilliseconds);
   }
-  kill(child, SIGKILL);
+  kill(leads_group ? -child : child, SIGKILL);
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   return false;
 }
@@ -167,7 +168,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   CallOutput result;
   const bool spoken = Converse(in, out, err, input, result, options.most_output, end);
   int status = 0;
-  const bool ended = Reap(child, spoken ? end : Clock::now(), status);
+  const bool ended = Reap(child, !options.part_of_us, spoken ? end : Clock::now(), status);
   if (!options.deadline && !spoken) return Failure(program, "its output could not be read");
   if (!spoken || !ended) {
     // A full queue makes sbatch wait and say so.

@@ -43,7 +43,7 @@ Status Extend(CommandContext& context, const ResumeOptions& options) {
 
 Status CheckNoMasterJob(CommandContext& context, const std::string& directory,
                         const slurm::SlurmCampaign& campaign) {
-  TRY(const std::vector<slurm::JobStatus> jobs, campaign.LivingJobs(*context.slurm()));
+  TRY(const std::vector<slurm::JobStatus> jobs, campaign.LivingJobs(*ClientOf(context, campaign)));
   for (const slurm::JobStatus& job : jobs) {
     if (job.name != campaign.master_job_name()) continue;
     return Error{ErrorKind::kInUse,
@@ -54,11 +54,13 @@ Status CheckNoMasterJob(CommandContext& context, const std::string& directory,
 }
 
 std::string JobOfThisProcess() {
-  const char* job = std::getenv("SLURM_JOB_ID");
-  return job != nullptr ? job : "unknown";
+  for (const char* name : {"GAUNTLET_BATCH_JOB", "SLURM_JOB_ID"}) {
+    if (const char* job = std::getenv(name); job != nullptr) return job;
+  }
+  return "unknown";
 }
 
-// The master's job of a submitted campaign, handed to Slurm again unless it is there.
+// The master's job of a submitted campaign, handed to its cluster again unless it is there.
 Result<ExitCode> SubmitAgain(CommandContext& context, const ResumeOptions& options,
                              const slurm::SlurmCampaign& campaign) {
   const std::string& directory = options.directory;

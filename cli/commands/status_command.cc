@@ -139,17 +139,17 @@ std::string StatusText(const Json& status, const std::string& directory) {
   return text;
 }
 
-// What Slurm has of a campaign or study that no master serves. Nothing when it was not submitted.
+// What the cluster has of a campaign or study that no master serves. Nothing when it was not submitted.
 void AddJobs(CommandContext& context, const std::string& directory, Json& status) {
   const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
   if (!submitted) {
-    // Somebody else's campaign may be looked at; whether Slurm has jobs of it is theirs to ask.
-    status["pool_trouble"] = "Slurm was not asked: " + submitted.error().message;
+    // Somebody else's campaign may be looked at; whether the cluster has jobs of it is theirs to ask.
+    status["pool_trouble"] = "The cluster was not asked: " + submitted.error().message;
     return;
   }
   if (!submitted->has_value()) return;
   const slurm::SlurmCampaign& campaign = **submitted;
-  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
+  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*ClientOf(context, campaign));
   if (!jobs) {
     status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
     return;

@@ -21,7 +21,7 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
   const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
   if (submitted && !submitted->has_value()) return true;
   const Result<std::vector<std::string>> cancelled =
-      submitted ? (*submitted)->CancelJobs(*context.slurm())
+      submitted ? (*submitted)->CancelJobs(*ClientOf(context, **submitted))
                 : Result<std::vector<std::string>>(submitted.error());
   if (!cancelled) {
     PrintMessage(context, fmt::format("{}{}; jobs of the campaign may be left: try again",

@@ -1,4 +1,4 @@
-// gauntlet submit: a campaign whose master and workers are jobs of a Slurm cluster.
+// gauntlet submit: a campaign whose master and workers are jobs of a cluster.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -30,7 +30,7 @@ struct SubmitOptions {
   bool dry_run = false;
 };
 
-// Hands the master's job to Slurm and says how to follow it.
+// Hands the master's job to the cluster and says how to follow it.
 Result<ExitCode> SubmitAndReturn(CommandContext& context, const SubmitOptions& options,
                                  const std::string& directory, const slurm::SlurmCampaign& campaign) {
   TRY(const std::string job, SubmitMasterJob(context, directory, campaign));
@@ -91,22 +91,24 @@ Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options
   TRY(context.campaigns.Prepare(directory, searches, slurm::WriteSlurmSettings(settings)));
   if (as_job) return SubmitAndReturn(context, options, directory, campaign);
   if (!options.messages.quiet)
-    PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", directory,
-                                      campaign.job_prefix(), context.program, PastedPath(directory)));
+    PrintMessage(context, fmt::format("{}: workers come from {} as {}w*; see: {} status {}", directory,
+                                      campaign.cluster().name, campaign.job_prefix(), context.program,
+                                      PastedPath(directory)));
   return ServeSubmitted(context, {options.messages, "", ""}, directory, campaign, "");
 }
 
 }  // namespace
 
 void AddSubmit(CommandParser& parser) {
-  const auto [command, options] = parser.Add("submit", "run a search as jobs of a Slurm cluster", RunSubmit);
+  const auto [command, options] = parser.Add(
+      "submit", "run a search as jobs of a cluster: Slurm, SGE, PBS, or hosts with ssh", RunSubmit);
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddMessageOptions(command, options.messages);
   AddSlurmOptions(command, options.slurm);
   AddSweepOptions(command, options.sweep);
   command.add_flag("--dry-run", options.dry_run,
-                   "submit nothing: print the job scripts, what sbatch --test-only says of them, and how "
+                   "submit nothing: print the job scripts, what the scheduler says of them, and how "
                    "many runs, core hours and "
                    "allocations it would take");
   std::string settings;

@@ -36,7 +36,7 @@ TEST(ParseQueue, QuotesWhatIsNoQueue) {
   const Result<std::vector<JobStatus>> jobs = ParseQueue("squeue: strange news\n");
   ASSERT_FALSE(jobs.ok());
   EXPECT_EQ(jobs.error().message,
-            "squeue printed 'squeue: strange news', which is not of the form %i|%T|%N|%r|%j");
+            "squeue printed 'squeue: strange news', which is not of the form id|state|node|reason|name");
 }
 
 TEST(PhaseOf, AnUnknownWordIsNotAnEnd) {

@@ -1,0 +1,216 @@
+#include "slurm/cluster.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <regex>
+
+#include "base/nearest_name.h"
+#include "base/system/atomic_file.h"
+#include "search/experiment/key_assignment.h"
+#include "slurm/shipped_texts.h"
+
+namespace gauntlet::slurm {
+namespace {
+
+constexpr std::array<std::string_view, 4> kPhases = {"queued", "running", "ending", "ended"};
+constexpr std::array<std::string_view, 9> kDirectives = {
+    "partition", "account", "qos", "constraint", "memory", "extra", "time_limit", "workers_per_allocation",
+    "array"};
+
+std::vector<SettingsKey<Cluster>> MakeClusterKeys() {
+  using C = Cluster;
+  std::vector<SettingsKey<Cluster>> keys = {
+      FieldKey<C, &C::name>("name", "the scheduler's, for sentences"),
+      FieldKey<C, &C::submit>("submit", "command that takes a job's script on stdin"),
+      FieldKey<C, &C::test>("test", "likewise, submits nothing and fails when the job could never start"),
+      FieldKey<C, &C::look>("look", "command that prints id|state|node|reason|name of each job and task"),
+      FieldKey<C, &C::cancel>("cancel", "command that ends the jobs whose ids are its arguments"),
+      FieldKey<C, &C::job_id>("job_id", "regular expression; its first group in submit's answer is the id"),
+      FieldKey<C, &C::task_id>("task_id", "id of an array's task, made of @JOB@ and @TASK@"),
+      FieldKey<C, &C::exclude>("exclude", "options of submit that keep a job off @NODES@"),
+      FieldKey<C, &C::node_separator>("node_separator", "what stands between these nodes"),
+      FieldKey<C, &C::script>("script", "of a job, with @JOB_NAME@, @DIRECTIVES@ and @RUN@"),
+      FieldKey<C, &C::connect>("connect", "command that reaches a host and runs a command there"),
+      NumberKey<C, &C::give_up_after>("give_up_after", "", 0, 1e6,
+                                      "failed starts in a row, without a word from any worker, that end it")};
+  return keys;
+}
+
+bool Has(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+Status AddHost(const std::string& text, Cluster& cluster) {
+  static const std::regex kForm(R"(([A-Za-z0-9_][A-Za-z0-9_.@-]*)(?::([1-9][0-9]{0,3}))?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, kForm))
+    return InvalidInput(fmt::format("hosts has '{}': give NAME or NAME:SLOTS, \"node7:16\"", text));
+  cluster.hosts.push_back({match.str(1), match[2].matched ? std::stoi(match.str(2)) : 1});
+  return Ok{};
+}
+
+// hosts, never_starts
+Status AssignList(const Assignment& assignment, Cluster& cluster) {
+  const auto* list = std::get_if<OtherToml>(&assignment.value);
+  if (list == nullptr || !list->texts)
+    return InvalidInput(fmt::format("{} is {}, expected a list of texts", assignment.path,
+                                    list == nullptr ? KindOf(assignment.value) : list->kind));
+  if (assignment.path == "never_starts") {
+    cluster.never_starts = *list->texts;
+    return Ok{};
+  }
+  cluster.hosts.clear();
+  for (const std::string& text : *list->texts) {
+    TRY(AddHost(text, cluster));
+  }
+  return Ok{};
+}
+
+// [states] and [directives]
+Status AssignRow(const Assignment& assignment, std::string_view table, std::string_view row,
+                 Cluster& cluster) {
+  const auto* text = std::get_if<std::string>(&assignment.value);
+  if (text == nullptr)
+    return InvalidInput(fmt::format("{} is {}, expected text", assignment.path, KindOf(assignment.value)));
+  if (table == "directives") {
+    if (std::ranges::count(kDirectives, row) == 0)
+      return InvalidInput(UnknownName("directive", row, kDirectives));
+    cluster.directives[std::string(row)] = *text;
+    return Ok{};
+  }
+  const auto* const phase = std::ranges::find(kPhases, *text);
+  if (phase == kPhases.end())
+    return InvalidInput(
+        fmt::format("{} = \"{}\" is unknown, allowed {}", assignment.path, *text, NamesOf(kPhases)));
+  cluster.states[std::string(row)] = static_cast<JobPhase>(phase - kPhases.begin());
+  return Ok{};
+}
+
+Status AssignNamed(const Assignment& assignment, Cluster& cluster) {
+  const std::string_view path = assignment.path;
+  if (path == "like") return Ok{};
+  if (path == "hosts" || path == "never_starts") return AssignList(assignment, cluster);
+  const std::string_view table = path.substr(0, path.find('.'));
+  if (table.size() < path.size() && (table == "states" || table == "directives"))
+    return AssignRow(assignment, table, path.substr(table.size() + 1), cluster);
+  const SettingsKey<Cluster>* key = FindByName(ClusterKeys(), path);
+  if (key == nullptr) return InvalidInput(UnknownName("key of a cluster file", path, ClusterKeys()));
+  return Assign(*key, assignment, cluster);
+}
+
+// Later assignments on top of what the file is like, without a look at whether that makes a cluster.
+Result<Cluster> Parse(std::string_view text, const std::string& file_name);
+
+Result<Cluster> Shipped(std::string_view name) {
+  if (const ShippedText* shipped = FindByName(kShippedClusters, name))
+    return Parse(shipped->text, fmt::format("{}.toml", name));
+  return InvalidInput(fmt::format("{} (or give the path of a cluster file: ./lab.toml)",
+                                  UnknownName("cluster", name, kShippedClusters)));
+}
+
+Result<Cluster> Parse(std::string_view text, const std::string& file_name) {
+  TRY(const std::vector<Assignment> assignments, ReadToml(text, file_name));
+  Cluster cluster;
+  for (const Assignment& assignment : assignments) {
+    // Hosts need nothing else.
+    if (assignment.path != "like" && assignment.path != "hosts") continue;
+    TRY(cluster, Shipped(assignment.path == "hosts" ? "ssh" : TextOf(assignment.value)));
+    break;
+  }
+  for (const Assignment& assignment : assignments) {
+    if (const Status assigned = AssignNamed(assignment, cluster); !assigned) {
+      const std::string& words = assigned.error().message;
+      return words.starts_with(assignment.where)
+                 ? assigned.error()
+                 : InvalidInput(fmt::format("{}: {}", assignment.where, words));
+    }
+  }
+  return cluster;
+}
+
+// "" when the expression has a group.
+std::string WhyNoJobId(const std::string& expression) {
+  try {
+    return std::regex(expression).mark_count() > 0 ? "" : "has no group in brackets, which is the id";
+  } catch (const std::regex_error& error) {
+    return fmt::format("is no regular expression: {}", error.what());
+  }
+}
+
+Status CheckPlaceholders(const Cluster& cluster) {
+  const std::string arguments = "\"$@\"";
+  const std::string script = cluster.script == kSlurmScripts ? "" : cluster.script;
+  std::vector<std::array<std::string, 3>> needed = {{"script", script, "@JOB_NAME@"},
+                                                    {"script", script, "@DIRECTIVES@"},
+                                                    {"script", script, "@RUN@"},
+                                                    {"task_id", cluster.task_id, "@JOB@"},
+                                                    {"task_id", cluster.task_id, "@TASK@"},
+                                                    {"exclude", cluster.exclude, "@NODES@"},
+                                                    {"cancel", cluster.cancel, arguments},
+                                                    {"connect", cluster.connect, arguments}};
+  if (!cluster.exclude.empty()) needed.push_back({"submit", cluster.submit, arguments});
+  for (const auto& [name, line] : cluster.directives)
+    needed.push_back({"directives." + name, line, "@VALUE@"});
+  for (const auto& [key, text, part] : needed) {
+    if (!text.empty() && !Has(text, part)) return InvalidInput(fmt::format("{} lacks {}", key, part));
+  }
+  return Ok{};
+}
+
+Status Check(const Cluster& cluster) {
+  const bool scheduler = cluster.connect.empty();
+  if (!scheduler && cluster.hosts.empty())
+    return InvalidInput("hosts is missing: hosts = [\"node7:16\", ...]");
+  const std::vector<std::string_view> needed =
+      scheduler ? std::vector<std::string_view>{"name", "submit", "look", "cancel", "job_id", "script"}
+                : std::vector<std::string_view>{"name", "script"};
+  for (const std::string_view name : needed) {
+    if (ToSet(FindByName(ClusterKeys(), name)->get(cluster)).empty())
+      return InvalidInput(
+          fmt::format("{} is missing, or a shipped cluster to begin with: like = \"sge\"", name));
+  }
+  if (const std::string why = scheduler ? WhyNoJobId(cluster.job_id) : ""; !why.empty())
+    return InvalidInput(fmt::format("job_id = '{}' {}", cluster.job_id, why));
+  if (cluster.task_id.empty() == cluster.directives.contains("array"))
+    return InvalidInput("give both task_id and directives.array, or neither");
+  return CheckPlaceholders(cluster);
+}
+
+}  // namespace
+
+const std::vector<SettingsKey<Cluster>>& ClusterKeys() {
+  static const std::vector<SettingsKey<Cluster>> keys = MakeClusterKeys();
+  return keys;
+}
+
+Result<Cluster> ReadCluster(std::string_view text, const std::string& file_name) {
+  TRY(Cluster cluster, Parse(text, file_name));
+  if (const Status complete = Check(cluster); !complete)
+    return InvalidInput(fmt::format("{}: {}", file_name, complete.error().message));
+  return cluster;
+}
+
+const Cluster& SlurmCluster() {
+  static const Cluster cluster = Shipped("slurm").value();
+  return cluster;
+}
+
+bool IsClusterFile(std::string_view name) {
+  return Has(name, "/") || name.ends_with(".toml");
+}
+
+Result<Cluster> FindCluster(const std::string& name) {
+  if (!IsClusterFile(name)) {
+    TRY(Cluster cluster, Shipped(name));
+    if (const Status complete = Check(cluster); !complete)
+      return InvalidInput(fmt::format("cluster = {}: {}", name, complete.error().message));
+    return cluster;
+  }
+  const Result<std::string> text = ReadSmallFile(name);
+  if (!text) return InvalidInput(fmt::format("cluster = {}: {}", name, text.error().message));
+  return ReadCluster(*text, name);
+}
+
+}  // namespace gauntlet::slurm

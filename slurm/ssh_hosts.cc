@@ -1,0 +1,207 @@
+#include "slurm/ssh_hosts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <future>
+#include <regex>
+#include <sstream>
+#include <utility>
+
+#include "base/number_text.h"
+#include "base/shell_quoted.h"
+#include "base/split.h"
+
+namespace gauntlet::slurm {
+namespace {
+
+constexpr std::chrono::seconds kDeadline{20};
+
+// Before each line that is meant for us: shells greet their users in many ways.
+constexpr std::string_view kMark = "gauntlet:";
+
+// Programs for bash on the host, which has the variables that Ask sets (proc(5): of /proc/PID/stat behind the
+// name, the session is the 4th field and the time of the start the 20th).
+constexpr std::string_view kFunctions = R"sh(
+start_of() {
+  local stat
+  { read -r stat <"/proc/$1/stat"; } 2>/dev/null || return
+  set -- ${stat##*) }
+  session=$4 start=${20}
+}
+)sh";
+constexpr std::string_view kStart = R"sh(
+setsid /bin/bash -c "$script" </dev/null >/dev/null 2>&1 &
+start_of $! && echo "gauntlet:$!.$start@$GAUNTLET_HOST"
+)sh";
+constexpr std::string_view kLook = R"sh(
+for file in $(grep -lsz "^GAUNTLET_HOST=$GAUNTLET_HOST\$" /proc/[0-9]*/environ); do
+  pid=${file#/proc/} pid=${pid%/environ}
+  start_of "$pid" && [ "$session" = "$pid" ] || continue
+  name=$(tr '\0' '\n' <"$file" 2>/dev/null | sed -n 's/^GAUNTLET_JOB=//p')
+  echo "gauntlet:$pid.$start@$GAUNTLET_HOST|RUNNING|$GAUNTLET_HOST||$name"
+done
+echo gauntlet:end
+)sh";
+constexpr std::string_view kCancel = R"sh(
+signal_jobs() {
+  for job in $jobs; do
+    start_of "${job%.*}" && [ "$start" = "${job#*.}" ] && kill "$1" $("$2" "${job%.*}")
+  done
+}
+all_of() { ps -o pid= -s "$1"; }
+signal_jobs -TERM echo
+(sleep 30; signal_jobs -KILL all_of) </dev/null >/dev/null 2>&1 &
+echo gauntlet:end
+)sh";
+
+// Words of OpenSSH with which it is of no use to try again.
+bool IsRefusal(std::string_view words) {
+  constexpr std::array<std::string_view, 6> kRefusals = {"Permission denied",
+                                                         "Host key verification failed",
+                                                         "Too many authentication failures",
+                                                         "No supported authentication methods",
+                                                         "Could not resolve hostname",
+                                                         "command not found"};
+  return std::ranges::any_of(kRefusals,
+                             [&](std::string_view refusal) { return words.find(refusal) != words.npos; });
+}
+
+std::string LastLine(std::string_view text) {
+  text = Trimmed(text);
+  return std::string(Trimmed(text.substr(text.rfind('\n') + 1)));
+}
+
+std::pair<std::string, std::string> ProcessAndHost(const std::string& job) {
+  const std::size_t at = std::min(job.find('@'), job.size());
+  return {job.substr(0, at), job.substr(std::min(at + 1, job.size()))};
+}
+
+}  // namespace
+
+SshHosts::SshHosts(Cluster cluster, int slots_per_job) : cluster_(std::move(cluster)) {
+  for (const ClusterHost& host : cluster_.hosts)
+    hosts_.push_back({.name = host.name, .most_jobs = std::max(1, host.slots / std::max(1, slots_per_job))});
+}
+
+int SshHosts::room() const {
+  int jobs = 0;
+  for (const Host& host : hosts_) jobs += host.most_jobs;
+  return jobs;
+}
+
+// The lines of the answer that are meant for us.
+Result<std::vector<std::string>> SshHosts::Ask(Host& host, const Variables& variables,
+                                               std::string_view program) {
+  if (!host.refusal.empty()) return InvalidInput(host.refusal);
+  std::string text = fmt::format("export GAUNTLET_HOST={}\n", host.name);
+  for (const auto& [name, value] : variables) text += fmt::format("{}={}\n", name, ShellQuoted(value));
+  text.append(kFunctions).append(program);
+  const Result<CallOutput> output =
+      CallCluster(cluster_.connect, {host.name, "exec /bin/bash -s"}, text, kDeadline);
+  std::vector<std::string> lines;
+  std::istringstream answer(output ? output->out : "");
+  for (std::string line; std::getline(answer, line);) {
+    if (line.starts_with(kMark)) lines.push_back(line.substr(kMark.size()));
+  }
+  host.silence = output ? "" : output.error().message;
+  if (output && (output->exit_code != 0 || lines.empty())) {
+    const std::string words = LastLine(output->err.empty() ? output->out : output->err);
+    host.silence = fmt::format("{} (exit code {})", words.empty() ? "no answer" : words, output->exit_code);
+    if (IsRefusal(output->err)) host.refusal = host.silence;
+  }
+  if (host.silence.empty()) return lines;
+  return Error{ErrorKind::kIo, host.silence};
+}
+
+void SshHosts::Look(Host& host) {
+  const Result<std::vector<std::string>> lines = Ask(host, {}, kLook);
+  if (!lines || lines->back() != "end") return;
+  host.looked = true;
+  host.jobs.clear();
+  for (const std::string& line : *lines) {
+    if (const Result<std::vector<JobStatus>> job = ParseQueue(line, cluster_); job && line != "end")
+      host.jobs.insert(host.jobs.end(), job->begin(), job->end());
+  }
+}
+
+// What is wrong with which hosts.
+std::string SshHosts::Troubles() const {
+  std::string troubles;
+  for (const Host& host : hosts_) {
+    if (host.silence.empty() && host.refusal.empty()) continue;
+    troubles += fmt::format("; {} {}: {}", host.name,
+                            host.refusal.empty() ? "does not answer" : "is out until `gauntlet resume`",
+                            host.refusal.empty() ? host.silence : host.refusal);
+  }
+  return troubles;
+}
+
+Result<std::string> SshHosts::Submit(const std::string& script, const std::vector<std::string>& /*options*/) {
+  static const std::regex kName("\n# ([A-Za-z0-9._-]+)");
+  std::smatch name;
+  if (!std::regex_search(script, name, kName))
+    return InvalidInput("the script of a job on a host begins with a line `# @JOB_NAME@`");
+  if (std::ranges::none_of(hosts_, &Host::looked)) (void)Queue("").ok();
+  const auto room = [](const Host* host) { return host->most_jobs - static_cast<int>(host->jobs.size()); };
+  std::vector<Host*> candidates;
+  for (Host& host : hosts_) {
+    if (host.silence.empty() && host.refusal.empty() && room(&host) > 0) candidates.push_back(&host);
+  }
+  std::ranges::stable_sort(candidates, std::greater<>(), room);
+  for (Host* host : candidates) {
+    const Result<std::vector<std::string>> job =
+        Ask(*host, {{"export GAUNTLET_JOB", name.str(1)}, {"script", script}}, kStart);
+    if (!job) continue;
+    host->jobs.push_back({job->front(), name.str(1), "RUNNING", JobPhase::kRunning, "", host->name});
+    return job->front();
+  }
+  if (std::ranges::none_of(hosts_, [](const Host& host) { return host.refusal.empty(); }))
+    return Error{ErrorKind::kNotFound, "no host can be used" + Troubles()};
+  return Error{ErrorKind::kInUse, "no host has room for another job" + Troubles()};
+}
+
+Result<std::string> SshHosts::TestOnly(const std::string& /*script*/,
+                                       const std::vector<std::string>& /*options*/) {
+  return std::string();
+}
+
+Result<std::vector<JobStatus>> SshHosts::Queue(const std::string& name_prefix) {
+  std::vector<std::future<void>> looks;
+  for (Host& host : hosts_) looks.push_back(std::async(std::launch::async, [this, &host] { Look(host); }));
+  for (std::future<void>& look : looks) look.wait();
+  std::vector<JobStatus> jobs;
+  for (const Host& host : hosts_) {
+    for (const JobStatus& job : host.jobs) {
+      if (!job.name.starts_with(name_prefix)) continue;
+      jobs.push_back(job);
+      if (!host.silence.empty()) jobs.back().reason = "its host does not answer";
+    }
+  }
+  const bool some = std::ranges::any_of(hosts_, [](const Host& host) { return host.silence.empty(); });
+  if (some || !jobs.empty()) return jobs;
+  return Error{ErrorKind::kIo, "no host answers" + Troubles()};
+}
+
+Status SshHosts::Cancel(const std::vector<std::string>& jobs) {
+  std::vector<std::future<Result<std::vector<std::string>>>> answers;
+  for (Host& host : hosts_) {
+    std::string processes;
+    for (const std::string& job : jobs) {
+      const auto [process, name] = ProcessAndHost(job);
+      if (name == host.name) processes += " " + process;
+    }
+    if (processes.empty()) continue;
+    answers.push_back(std::async(std::launch::async, [this, &host, processes] {
+      return Ask(host, {{"jobs", processes}}, kCancel);
+    }));
+  }
+  Status done = Ok{};
+  for (auto& answer : answers) {
+    if (const auto lines = answer.get(); !lines) done = lines.error();
+  }
+  return done;
+}
+
+}  // namespace gauntlet::slurm
