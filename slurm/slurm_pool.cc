@@ -26,11 +26,14 @@ SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> clie
 
 SlurmPool::~SlurmPool() {
   StopReplacing();
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.clear();
+  }
   if (!released_) PostCancelAll();
   {
     const std::lock_guard lock(mutex_);
     leaving_ = true;
-    if (released_) tasks_.clear();
   }
   work_.notify_all();
   thread_.join();
