@@ -21,7 +21,7 @@ struct StudyRun {
 // Goes on with the study in its directory, and prints what came out. Exit codes as RunCampaign's.
 Result<ExitCode> RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run);
 
-// Hands the master's job of a submitted study to Slurm and says how to follow it.
+// Hands the master's job of a submitted study to its cluster and says how to follow it.
 Result<ExitCode> SubmitStudyJob(CommandContext& context, const std::string& directory,
                                 const slurm::SlurmCampaign& campaign, bool json);
 

@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "base/nearest_name.h"
-#include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "search/experiment/key_assignment.h"
 #include "slurm/shipped_texts.h"
 
@@ -208,7 +208,7 @@ Result<Cluster> FindCluster(const std::string& name) {
       return InvalidInput(fmt::format("cluster = {}: {}", name, complete.error().message));
     return cluster;
   }
-  const Result<std::string> text = ReadSmallFile(name);
+  const Result<std::string> text = ReadRegularFile(name);
   if (!text) return InvalidInput(fmt::format("cluster = {}: {}", name, text.error().message));
   return ReadCluster(*text, name);
 }

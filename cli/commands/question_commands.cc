@@ -259,7 +259,7 @@ void AddPlace(CLI::App& command, const Question& question, QuestionOptions& opti
                        "cases come line by line on stdin instead, answers go to stdout; see below");
       AddValue(
           command, "--slurm", "KEY=VALUE", options.slurm.settings,
-          "with --stdin: workers are jobs of a Slurm cluster, as 'gauntlet submit' has them; repeatable");
+          "with --stdin: workers are jobs of a cluster, as 'gauntlet submit' has them; repeatable");
     }
     if (*question.other == '\0') return;
     command.add_option("OTHER", options.other, question.other);

@@ -109,13 +109,13 @@ Result<ExitCode> ResumeStudy(CommandContext& context, const ResumeOptions& optio
   if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty()) {
     return InvalidInput(
         fmt::format("{} holds a study: its file says how long its searches are, and "
-                    "its workers are of this machine or of Slurm",
+                    "its workers are of this machine or of a cluster",
                     directory));
   }
   TRY(const Study study, OpenStudy(directory));
   TRY(const std::optional<slurm::SlurmCampaign> submitted, slurm::SlurmCampaign::Find(directory));
   if (!submitted.has_value() && options.as_job)
-    return InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm", directory));
+    return InvalidInput(fmt::format("--as-job: {} was not submitted", directory));
   TRY(const bool simulated, IsSimulated(study, directory));
   StudyRun run{directory, options.running, "", nullptr, ""};
   if (!submitted.has_value() || !options.running.workers.empty() || simulated)
@@ -139,7 +139,7 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
   }
   if (options.as_job)
     return InvalidInput(
-        fmt::format("--as-job: {} was not submitted to Slurm, or --workers or --bind "
+        fmt::format("--as-job: {} was not submitted, or --workers or --bind "
                     "is given; use 'submit'",
                     options.directory));
   // With --bind workers come from elsewhere, unless some are asked for.
@@ -181,7 +181,7 @@ is that of an undisturbed campaign. Of a finished campaign only the summary is p
 --set makes it longer: its result is then that of a campaign that had this length from the start. In a sweep,
 all searches get the new length.
 
-With --bind, workers connect from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
+With --bind, workers connect from elsewhere, as with 'gauntlet master'. A campaign that was submitted to a cluster
 continues there, and its remaining jobs are used, unless --workers or --bind is given.
 
 Examples:

@@ -235,7 +235,7 @@ void AddStatus(CommandParser& parser) {
   command.add_flag("--json", options.json, "print everything as one JSON document");
   command.footer(
       R"(Reads the status that a living master writes every second, or, without a master, what is stored. For a
-submitted campaign it also lists the jobs, with Slurm's state and reason. DIR may be that of a study: it then
+submitted campaign it also lists the jobs, with the cluster's state and reason. DIR may be that of a study: it then
 tells of each of its campaigns.
 
 Examples:

@@ -16,7 +16,7 @@ struct StopOptions {
   std::string directory;
 };
 
-// What Slurm still has of a campaign without a master. False when Slurm did not answer.
+// What the cluster still has of a campaign without a master. False when it did not answer.
 bool CancelLeftovers(CommandContext& context, const std::string& directory) {
   const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
   if (submitted && !submitted->has_value()) return true;

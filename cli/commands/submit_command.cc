@@ -120,7 +120,8 @@ void AddSubmit(CommandParser& parser) {
   command.footer(
       R"(Submits the master as a job and returns. While there is work, the master submits workers and replaces lost
 ones; when the search has ended, it cancels them. The campaign's directory must be on a file system that the
-compute nodes share. The same experiment and seed give the same result as with 'evolve'.
+compute nodes share. The cluster is Slurm's unless --slurm cluster=sge, cluster=pbs or a cluster file says
+otherwise (docs/clusters.md). The same experiment and seed give the same result as with 'evolve'.
 
 With --sweep or --seeds the campaign holds many searches, which share one pool of workers. Each search gives the
 same result as 'evolve' with its --set and --seed; 'show' lists them.
@@ -131,6 +132,7 @@ Settings for --slurm, which may also be in the experiment's [slurm] table or in 
 Examples:
   gauntlet submit flocking --dir $WORK/flocking-1 --slurm partition=short --slurm max_allocations=20
   gauntlet submit flocking --dry-run
+  gauntlet submit flocking --dir $HOME/flocking-1 --slurm cluster=sge
   gauntlet submit flocking --sweep search.mutation_probability=0.02,0.05,0.1 --seeds 1..20
   gauntlet submit flocking --master here --generations 100)");
 }

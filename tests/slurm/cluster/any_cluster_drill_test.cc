@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -72,7 +73,7 @@ class AnyClusterDrill : public AnyClusterTest {
 
   SmallCampaign campaign_ = [] {
     SmallCampaign campaign;
-    campaign.generations = 40;
+    campaign.generations = 25;
     return campaign;
   }();
   std::string hash_;
@@ -92,7 +93,13 @@ TEST_P(AnyClusterDrill, AJobIsCancelledAndAnotherVanishes) {
 
 TEST_P(AnyClusterDrill, ANodeDies) {
   Begin();
-  const std::string node = Connected(Status()).begin()->second["nodes"];
+  std::string node;
+  ASSERT_TRUE(StatusBecomes([&](const json& status) {
+    const auto connected = Connected(status);
+    if (AtStrength(status)) node = connected.begin()->second["nodes"];
+    return !node.empty() &&
+           std::ranges::none_of(connected, [](const auto& job) { return job.second["nodes"] == ""; });
+  }));
   std::set<std::string> there;
   for (const auto& [job, allocation] : Connected(Status())) {
     if (allocation["nodes"] == node) there.insert(job);
