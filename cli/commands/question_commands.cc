@@ -257,9 +257,8 @@ void AddPlace(CLI::App& command, const Question& question, QuestionOptions& opti
     if (question.streams) {
       command.add_flag("--stdin", options.from_stdin,
                        "cases come line by line on stdin instead, answers go to stdout; see below");
-      AddValue(
-          command, "--slurm", "KEY=VALUE", options.slurm.settings,
-          "with --stdin: workers are jobs of a cluster, as 'gauntlet submit' has them; repeatable");
+      AddValue(command, "--slurm", "KEY=VALUE", options.slurm.settings,
+               "with --stdin: workers are jobs of a cluster, as 'gauntlet submit' has them; repeatable");
     }
     if (*question.other == '\0') return;
     command.add_option("OTHER", options.other, question.other);
