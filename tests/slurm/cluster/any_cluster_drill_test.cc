@@ -167,6 +167,7 @@ INSTANTIATE_TEST_SUITE_P(, AnyClusterDrill, testing::Values("sge", "pbs", "ssh")
 class SchedulerDrill : public AnyClusterDrill {};
 
 TEST_P(SchedulerDrill, IsAwayForAMinute) {
+  campaign_.generations = 90;
   Begin();
   const std::string job = SomeJob();
   site_->Do({"ctl-stop"});
