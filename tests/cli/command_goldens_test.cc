@@ -66,6 +66,7 @@ std::string Stable(std::string text, const std::string& scratch) {
       {std::regex(R"(,[0-9.e-]+,([0-9a-f]{16}),<worker>,\d+)"), ",<measured>,$1,<worker>,<measured>"},
       {std::regex(R"(commit .*, compiled by .*)"), "commit <commit>, compiled by <compiler>"},
       {std::regex(R"(this machine has \d+)"), "this machine has <cores>"},
+      {std::regex(R"(gauntlet-abc-[0-9a-f]{6}-)"), "gauntlet-abc-<hash>-"},
       {std::regex(R"(127\.0\.0\.1:\d{4,5}\b)"), "127.0.0.1:<port>"},
   };
   for (const auto& [what, with] : rules) text = std::regex_replace(text, what, with);
