@@ -208,8 +208,10 @@ TEST_P(SchedulerDrill, WaitingJobsAreHeld) {
 
 TEST_P(SchedulerDrill, TheQueueIsFull) {
   if (Is("sge")) {
+    // An array counts as one job.
     const std::string full =
-        "qconf -sconf | sed 's/^max_u_jobs .*/max_u_jobs 2/' >\"$1\" && qconf -Mconf \"$1\"";
+        "echo sleep 60 | qsub -N other -o /dev/null -j y; "
+        "qconf -sconf | sed 's/^max_u_jobs .*/max_u_jobs 1/' >\"$1\" && qconf -Mconf \"$1\"";
     const ProcessResult set = RunProcess({"/bin/bash", "-c", full, "full", scratch_ / "global"});
     ASSERT_EQ(set.exit_code, 0) << set.err << set.out;
   } else {
