@@ -15,9 +15,6 @@ namespace gauntlet::slurm {
 namespace {
 
 constexpr std::array<std::string_view, 4> kPhases = {"queued", "running", "ending", "ended"};
-constexpr std::array<std::string_view, 9> kDirectives = {
-    "partition", "account", "qos", "constraint", "memory", "extra", "time_limit", "workers_per_allocation",
-    "array"};
 
 std::vector<SettingsKey<Cluster>> MakeClusterKeys() {
   using C = Cluster;
@@ -35,6 +32,18 @@ std::vector<SettingsKey<Cluster>> MakeClusterKeys() {
       FieldKey<C, &C::connect>("connect", "command that reaches a host and runs a command there"),
       NumberKey<C, &C::give_up_after>("give_up_after", "", 0, 1e6,
                                       "failed starts in a row, without a word from any worker, that end it")};
+  for (const std::string name : {"partition", "account", "qos", "constraint", "memory", "extra", "time_limit",
+                                 "workers_per_allocation", "array"}) {
+    SettingsKey<Cluster> key = FieldKey<C, &C::name>("directives." + name, "line of the script for it");
+    key.get = [name](const Cluster& cluster) -> KeyValue {
+      const auto line = cluster.directives.find(name);
+      return line == cluster.directives.end() ? "" : line->second;
+    };
+    key.set = [name](Cluster& cluster, const KeyValue& value) {
+      cluster.directives[name] = std::get<std::string>(value);
+    };
+    keys.push_back(key);
+  }
   return keys;
 }
 
@@ -51,53 +60,38 @@ Status AddHost(const std::string& text, Cluster& cluster) {
   return Ok{};
 }
 
-// hosts, never_starts
-Status AssignList(const Assignment& assignment, Cluster& cluster) {
-  const auto* list = std::get_if<OtherToml>(&assignment.value);
-  if (list == nullptr || !list->texts)
-    return InvalidInput(fmt::format("{} is {}, expected a list of texts", assignment.path,
-                                    list == nullptr ? KindOf(assignment.value) : list->kind));
-  if (assignment.path == "never_starts") {
-    cluster.never_starts = *list->texts;
-    return Ok{};
-  }
-  cluster.hosts.clear();
-  for (const std::string& text : *list->texts) {
+// hosts, never_starts, or the states of a phase.
+Status AssignList(std::string_view key, const std::vector<std::string>& texts, Cluster& cluster) {
+  if (key == "never_starts") cluster.never_starts = texts;
+  if (key == "hosts") cluster.hosts.clear();
+  for (const std::string& text : texts) {
+    if (key != "hosts") break;
     TRY(AddHost(text, cluster));
   }
-  return Ok{};
-}
-
-// [states] and [directives]
-Status AssignRow(const Assignment& assignment, std::string_view table, std::string_view row,
-                 Cluster& cluster) {
-  const auto* text = std::get_if<std::string>(&assignment.value);
-  if (text == nullptr)
-    return InvalidInput(fmt::format("{} is {}, expected text", assignment.path, KindOf(assignment.value)));
-  if (table == "directives") {
-    if (std::ranges::count(kDirectives, row) == 0)
-      return InvalidInput(UnknownName("directive", row, kDirectives));
-    cluster.directives[std::string(row)] = *text;
-    return Ok{};
-  }
-  const auto* const phase = std::ranges::find(kPhases, *text);
-  if (phase == kPhases.end())
-    return InvalidInput(
-        fmt::format("{} = \"{}\" is unknown, allowed {}", assignment.path, *text, NamesOf(kPhases)));
-  cluster.states[std::string(row)] = static_cast<JobPhase>(phase - kPhases.begin());
+  const auto* const phase = std::ranges::find(kPhases, key);
+  if (phase == kPhases.end()) return Ok{};
+  const auto meant = static_cast<JobPhase>(phase - kPhases.begin());
+  std::erase_if(cluster.states, [&](const auto& state) { return state.second == meant; });
+  for (const std::string& text : texts) cluster.states[text] = meant;
   return Ok{};
 }
 
 Status AssignNamed(const Assignment& assignment, Cluster& cluster) {
   const std::string_view path = assignment.path;
   if (path == "like") return Ok{};
-  if (path == "hosts" || path == "never_starts") return AssignList(assignment, cluster);
-  const std::string_view table = path.substr(0, path.find('.'));
-  if (table.size() < path.size() && (table == "states" || table == "directives"))
-    return AssignRow(assignment, table, path.substr(table.size() + 1), cluster);
-  const SettingsKey<Cluster>* key = FindByName(ClusterKeys(), path);
-  if (key == nullptr) return InvalidInput(UnknownName("key of a cluster file", path, ClusterKeys()));
-  return Assign(*key, assignment, cluster);
+  if (path != "hosts" && path != "never_starts" && std::ranges::count(kPhases, path) == 0) {
+    const SettingsKey<Cluster>* key = FindByName(ClusterKeys(), path);
+    if (key != nullptr) return Assign(*key, assignment, cluster);
+    return InvalidInput(
+        fmt::format("{}: {}", assignment.where, UnknownName("key of a cluster file", path, ClusterKeys())));
+  }
+  const auto* list = std::get_if<OtherToml>(&assignment.value);
+  const Status assigned = list != nullptr && list->texts
+                              ? AssignList(path, *list->texts, cluster)
+                              : Status(InvalidInput(fmt::format("{} is {}, expected a list of texts", path,
+                                                                KindOf(assignment.value))));
+  if (assigned) return assigned;
+  return InvalidInput(fmt::format("{}: {}", assignment.where, assigned.error().message));
 }
 
 // Later assignments on top of what the file is like, without a look at whether that makes a cluster.
@@ -120,12 +114,7 @@ Result<Cluster> Parse(std::string_view text, const std::string& file_name) {
     break;
   }
   for (const Assignment& assignment : assignments) {
-    if (const Status assigned = AssignNamed(assignment, cluster); !assigned) {
-      const std::string& words = assigned.error().message;
-      return words.starts_with(assignment.where)
-                 ? assigned.error()
-                 : InvalidInput(fmt::format("{}: {}", assignment.where, words));
-    }
+    TRY(AssignNamed(assignment, cluster));
   }
   return cluster;
 }

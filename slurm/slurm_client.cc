@@ -90,30 +90,25 @@ std::string NextStep(std::string_view words) {
   return "";
 }
 
-Result<CallOutput> CallCluster(const std::string& command, const std::vector<std::string>& arguments,
-                               std::string_view input, std::chrono::milliseconds deadline) {
+Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& command,
+                               const std::vector<std::string>& arguments, std::string_view input,
+                               std::chrono::milliseconds deadline) {
   CallOptions options;
   options.deadline = deadline;
   options.inherits = Inherits;
-  std::vector<std::string> line = {"/bin/bash", "-o", "pipefail", "-c", command, ProgramOf(command)};
+  const std::string program = ProgramOf(command);
+  std::vector<std::string> line = {"/bin/bash", "-o", "pipefail", "-c", command, program};
   line.insert(line.end(), arguments.begin(), arguments.end());
-  return CallProcess(line, input, options);
-}
-
-// With the scheduler's own words for its absence.
-Result<CallOutput> CommandLineSlurm::Call(const std::string& command,
-                                          const std::vector<std::string>& arguments, std::string_view input,
-                                          std::chrono::milliseconds deadline) const {
-  Result<CallOutput> output = CallCluster(command, arguments, input, deadline);
+  Result<CallOutput> output = CallProcess(line, input, options);
   constexpr int kNoSuchProgram = 127;
   if (!output || output->exit_code != kNoSuchProgram) return output;
-  return Error{ErrorKind::kNotFound, "there is no " + ProgramOf(command) + " in PATH: is " + cluster_.name +
-                                         " installed on this machine?"};
+  return Error{ErrorKind::kNotFound,
+               "there is no " + program + " in PATH: is " + cluster.name + " installed on this machine?"};
 }
 
 Result<std::string> CommandLineSlurm::Submit(const std::string& script,
                                              const std::vector<std::string>& options) {
-  TRY(const auto output, Call(cluster_.submit, options, script, deadline_));
+  TRY(const auto output, CallCluster(cluster_, cluster_.submit, options, script, deadline_));
   if (output.exit_code != 0) return Refusal(cluster_.submit, output);
   Result<std::string> job = ParseJobId(output.out, cluster_);
   if (job) submitted_.push_back(*job);
@@ -123,13 +118,13 @@ Result<std::string> CommandLineSlurm::Submit(const std::string& script,
 Result<std::string> CommandLineSlurm::TestOnly(const std::string& script,
                                                const std::vector<std::string>& options) {
   if (cluster_.test.empty()) return std::string();
-  TRY(const auto output, Call(cluster_.test, options, script, kTestOnlyCalls * deadline_));
+  TRY(const auto output, CallCluster(cluster_, cluster_.test, options, script, kTestOnlyCalls * deadline_));
   if (output.exit_code != 0) return Refusal(cluster_.test, output);
   return WordsOf(ProgramOf(cluster_.test), output.err + output.out);
 }
 
 Result<std::vector<JobStatus>> CommandLineSlurm::Queue(const std::string& name_prefix) {
-  TRY(const auto output, Call(cluster_.look, {}, "", deadline_));
+  TRY(const auto output, CallCluster(cluster_, cluster_.look, {}, "", deadline_));
   if (output.exit_code != 0) return Silence(cluster_.look, output);
   Result<std::vector<JobStatus>> jobs = ParseQueue(output.out, cluster_);
   if (!jobs) return jobs;
@@ -147,7 +142,7 @@ Result<std::vector<JobStatus>> CommandLineSlurm::Queue(const std::string& name_p
 
 Status CommandLineSlurm::Cancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return Ok{};
-  TRY(const auto output, Call(cluster_.cancel, jobs, "", deadline_));
+  TRY(const auto output, CallCluster(cluster_, cluster_.cancel, jobs, "", deadline_));
   if (output.exit_code != 0) return Silence(cluster_.cancel, output);
   return Ok{};
 }

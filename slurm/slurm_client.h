@@ -46,16 +46,15 @@ class CommandLineSlurm final : public SlurmClient {
   Status Cancel(const std::vector<std::string>& jobs) override;
 
  private:
-  Result<CallOutput> Call(const std::string& command, const std::vector<std::string>& arguments,
-                          std::string_view input, std::chrono::milliseconds deadline) const;
-
   Cluster cluster_;
   std::chrono::milliseconds deadline_;
   std::vector<std::string> submitted_;  // ids
 };
 
-// A command of a cluster, with arguments, in bash: fails as the first program of a pipe that does.
-Result<CallOutput> CallCluster(const std::string& command, const std::vector<std::string>& arguments,
-                               std::string_view input, std::chrono::milliseconds deadline);
+// A command of a cluster, in bash: fails as the first program of a pipe that does. Error: kNotFound when
+// there is no such program.
+Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& command,
+                               const std::vector<std::string>& arguments, std::string_view input,
+                               std::chrono::milliseconds deadline);
 
 }  // namespace gauntlet::slurm

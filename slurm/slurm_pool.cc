@@ -119,14 +119,11 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
 
 void SlurmPool::CarryOut(const Decisions& decisions) {
   PostCancel(decisions.cancel);
-  if (decisions.submit > submitting_) Submit(decisions.submit - submitting_, decisions.exclude_nodes);
+  // Equal ones are an array, where there are arrays.
+  const int wanted = decisions.submit - submitting_;
+  const int at_once = options_.cluster.task_id.empty() ? 1 : std::max(1, wanted);
+  for (int i = 0; i < wanted; i += at_once) PostSubmit(at_once, decisions.exclude_nodes);
   if (decisions.query) PostQuery();
-}
-
-// Equal ones as an array, where there are arrays.
-void SlurmPool::Submit(int allocations, const std::vector<std::string>& excluded_nodes) {
-  const bool arrays = !options_.cluster.task_id.empty();
-  for (int i = 0; i < (arrays ? 1 : allocations); ++i) PostSubmit(arrays ? allocations : 1, excluded_nodes);
 }
 
 // The options of `exclude`, which stand apart by blanks.

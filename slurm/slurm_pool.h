@@ -66,7 +66,6 @@ class SlurmPool final : public WorkerPool {
   void CallCluster();
   void TakeAnswers(TimePoint now);
   void CarryOut(const Decisions& decisions);
-  void Submit(int allocations, const std::vector<std::string>& excluded_nodes);
   void PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes);
   std::vector<std::string> Exclusion(const std::vector<std::string>& nodes) const;
   void PostQuery();

@@ -58,12 +58,9 @@ echo gauntlet:end
 
 // Words of OpenSSH with which it is of no use to try again.
 bool IsRefusal(std::string_view words) {
-  constexpr std::array<std::string_view, 6> kRefusals = {"Permission denied",
-                                                         "Host key verification failed",
-                                                         "Too many authentication failures",
-                                                         "No supported authentication methods",
-                                                         "Could not resolve hostname",
-                                                         "command not found"};
+  constexpr std::array<std::string_view, 5> kRefusals = {
+      "Permission denied", "Host key verification failed", "Too many authentication failures",
+      "No supported authentication methods", "Could not resolve hostname"};
   return std::ranges::any_of(kRefusals,
                              [&](std::string_view refusal) { return words.find(refusal) != words.npos; });
 }
@@ -99,7 +96,7 @@ Result<std::vector<std::string>> SshHosts::Ask(Host& host, const Variables& vari
   for (const auto& [name, value] : variables) text += fmt::format("{}={}\n", name, ShellQuoted(value));
   text.append(kFunctions).append(program);
   const Result<CallOutput> output =
-      CallCluster(cluster_.connect, {host.name, "exec /bin/bash -s"}, text, kDeadline);
+      CallCluster(cluster_, cluster_.connect, {host.name, "exec /bin/bash -s"}, text, kDeadline);
   std::vector<std::string> lines;
   std::istringstream answer(output ? output->out : "");
   for (std::string line; std::getline(answer, line);) {
@@ -107,10 +104,11 @@ Result<std::vector<std::string>> SshHosts::Ask(Host& host, const Variables& vari
   }
   host.silence = output ? "" : output.error().message;
   if (output && (output->exit_code != 0 || lines.empty())) {
-    const std::string words = LastLine(output->err.empty() ? output->out : output->err);
-    host.silence = fmt::format("{} (exit code {})", words.empty() ? "no answer" : words, output->exit_code);
-    if (IsRefusal(output->err)) host.refusal = host.silence;
+    host.silence = LastLine(output->err.empty() ? output->out : output->err);
+    if (host.silence.empty()) host.silence = fmt::format("no answer, exit code {}", output->exit_code);
   }
+  if (IsRefusal(host.silence) || (!output && output.error().kind == ErrorKind::kNotFound))
+    host.refusal = host.silence;
   if (host.silence.empty()) return lines;
   return Error{ErrorKind::kIo, host.silence};
 }

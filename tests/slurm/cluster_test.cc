@@ -41,7 +41,8 @@ TEST(FindCluster, KnowsWhatIsShipped) {
 
 TEST(ReadCluster, BeginsWithAnotherAndChangesSomeRows) {
   const Result<Cluster> cluster = ReadCluster(
-      "like = \"pbs\"\nname = \"Torque\"\n[directives]\narray = '#PBS -t 1-@VALUE@'\n[states]\nC = "
+      "like = \"pbs\"\nended = [\"C\"]\nname = \"Torque\"\n[directives]\narray = '#PBS -t "
+      "1-@VALUE@'\n[states]\nC = "
       "\"ended\"\n",
       "t");
   ASSERT_TRUE(cluster.ok()) << cluster.error().message;
@@ -81,10 +82,11 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
             "unknown cluster 'sgi'; did you mean 'sge'? (or give the path of a cluster file: ./lab.toml)");
   EXPECT_EQ(ErrorOf("like = \"sge\"\nsubmitt = 'a'"),
             "lab.toml:2:1: unknown key of a cluster file 'submitt'; did you mean 'submit'?");
-  EXPECT_EQ(ErrorOf("like = \"sge\"\ndirectives.memori = '-l @VALUE@'"),
-            "lab.toml:2:12: unknown directive 'memori'; did you mean 'memory'?");
-  EXPECT_EQ(ErrorOf("like = \"sge\"\nstates.z = 'runs'"),
-            "lab.toml:2:8: states.z = \"runs\" is unknown, allowed queued, running, ending, ended");
+  EXPECT_EQ(
+      ErrorOf("like = \"sge\"\ndirectives.memori = '-l @VALUE@'"),
+      "lab.toml:2:12: unknown key of a cluster file 'directives.memori'; did you mean 'directives.memory'?");
+  EXPECT_EQ(ErrorOf("like = \"sge\"\nqueued = 'qw'"),
+            "lab.toml:2:1: queued is text, expected a list of texts");
   EXPECT_EQ(ErrorOf("like = \"sge\"\ngive_up_after = -1"),
             "lab.toml:2:1: give_up_after = -1 is out of range, allowed 0 to 1000000");
   EXPECT_EQ(ErrorOf("hosts = \"a\""), "lab.toml:1:1: hosts is text, expected a list of texts");
@@ -159,7 +161,7 @@ class OwnClusterTest : public testing::Test {
                       const std::string& cancel = "true \"$@\"") {
     return ReadCluster("name = \"Lab\"\nsubmit = '" + submit + "'\nlook = '" + look + "'\ncancel = '" +
                            cancel + "'\njob_id = 'job (\\d+)'\nscript = '@JOB_NAME@ @DIRECTIVES@ @RUN@'\n" +
-                           "states.R = \"running\"\n",
+                           "running = [\"R\"]\n",
                        "lab.toml");
   }
   std::string Read(const std::string& name) const {
