@@ -41,10 +41,7 @@ TEST(FindCluster, KnowsWhatIsShipped) {
 
 TEST(ReadCluster, BeginsWithAnotherAndChangesSomeRows) {
   const Result<Cluster> cluster = ReadCluster(
-      "like = \"pbs\"\nended = [\"C\"]\nname = \"Torque\"\n[directives]\narray = '#PBS -t "
-      "1-@VALUE@'\n[states]\nC = "
-      "\"ended\"\n",
-      "t");
+      "like = \"pbs\"\nended = [\"C\"]\nname = \"Torque\"\ndirectives.array = '#PBS -t 1-@VALUE@'\n", "t");
   ASSERT_TRUE(cluster.ok()) << cluster.error().message;
   EXPECT_EQ(cluster->submit, "qsub \"$@\"");
   EXPECT_EQ(cluster->directives.at("array"), "#PBS -t 1-@VALUE@");
