@@ -47,6 +47,12 @@ std::vector<SettingsKey<Cluster>> MakeClusterKeys() {
   return keys;
 }
 
+// What holds one value.
+const std::vector<SettingsKey<Cluster>>& ClusterKeys() {
+  static const std::vector<SettingsKey<Cluster>> keys = MakeClusterKeys();
+  return keys;
+}
+
 bool Has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -168,11 +174,6 @@ Status Check(const Cluster& cluster) {
 }
 
 }  // namespace
-
-const std::vector<SettingsKey<Cluster>>& ClusterKeys() {
-  static const std::vector<SettingsKey<Cluster>> keys = MakeClusterKeys();
-  return keys;
-}
 
 Result<Cluster> ReadCluster(std::string_view text, const std::string& file_name) {
   TRY(Cluster cluster, Parse(text, file_name));

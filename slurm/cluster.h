@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/key.h"
 #include "base/result.h"
 
 namespace gauntlet::slurm {
@@ -53,9 +52,6 @@ inline constexpr std::string_view kLookForm = "id|state|node|reason|name";
 
 // Slurm's own, which is meant where no other cluster is named.
 const Cluster& SlurmCluster();
-
-// The keys of a cluster file that hold one value.
-const std::vector<SettingsKey<Cluster>>& ClusterKeys();
 
 // The cluster that `text` describes, on top of the shipped one that its `like` names. Errors: malformed TOML,
 // an unknown key or phase, what is missing, and a template without a placeholder that it needs.

@@ -196,10 +196,11 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
 
 // A job that the queue does not show has left its exit code (slurm/run_job.sh), if it came to its end.
 void SlurmPool::AddEnds(std::vector<JobStatus>& jobs) const {
+  constexpr std::size_t kMostBytes = 16;
   for (const Allocation& allocation : policy_.allocations()) {
     if (std::ranges::count(jobs, allocation.job, &JobStatus::id) > 0) continue;
     const Result<std::string> code =
-        ReadRegularFile(fmt::format("{}/{}.exit", options_.job.log_directory, allocation.job));
+        ReadRegularFile(fmt::format("{}/{}.exit", options_.job.log_directory, allocation.job), kMostBytes);
     if (!code) continue;
     const std::string_view digits = Trimmed(*code);
     jobs.push_back({allocation.job, "", digits == "0" ? "COMPLETED" : "FAILED", JobPhase::kEnded,

@@ -160,11 +160,6 @@ Result<std::string> SshHosts::Submit(const std::string& script, const std::vecto
   return Error{ErrorKind::kInUse, "no host has room for another job" + Troubles()};
 }
 
-Result<std::string> SshHosts::TestOnly(const std::string& /*script*/,
-                                       const std::vector<std::string>& /*options*/) {
-  return std::string();
-}
-
 Result<std::vector<JobStatus>> SshHosts::Queue(const std::string& name_prefix) {
   std::vector<std::future<void>> looks;
   for (Host& host : hosts_) looks.push_back(std::async(std::launch::async, [this, &host] { Look(host); }));

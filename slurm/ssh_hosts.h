@@ -22,10 +22,8 @@ class SshHosts final : public SlurmClient {
 
   // Jobs that all hosts together take.
   int room() const;
-  // On the host with the most room.
+  // On the host with the most room. Nothing can be tested before: a key is tried once.
   Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override;
-  // Asks nobody: a key is tried once.
-  Result<std::string> TestOnly(const std::string& script, const std::vector<std::string>& options) override;
   // Asks all hosts at the same time. Error: none answers.
   Result<std::vector<JobStatus>> Queue(const std::string& name_prefix) override;
   // SIGTERM, and half a minute later SIGKILL to what is left of the job.
