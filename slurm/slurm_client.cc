@@ -79,6 +79,13 @@ constexpr std::array kAdvice = {
            "the cluster's queue is full: wait, or lower --slurm max_queued"},
     Advice{"Resource temporarily unavailable", "the cluster's queue is full: try again later"},
     Advice{"contact slurm controller", "what runs goes on; `scontrol ping` says when it is back"},
+    // Grid Engine 8.1.9, PBS, OpenSSH 9.2.
+    Advice{"unknown queue", "choose another: --slurm partition=NAME (`qconf -sql` lists them)"},
+    Advice{"parallel environment", "name yours in a cluster file: docs/sge.md (`qconf -spl` lists them)"},
+    Advice{"variable SGE_ROOT", "load Grid Engine's settings first: its common/settings.sh"},
+    Advice{"Unknown queue", "choose another: --slurm partition=NAME (`qstat -Q` lists them)"},
+    Advice{"Host key verification failed", "log in by hand once, where ssh asks: ssh HOST"},
+    Advice{"Permission denied (", "`ssh HOST true` must work without a password: ssh-copy-id HOST"},
 };
 
 }  // namespace
