@@ -45,7 +45,7 @@ class AnyClusterDrill : public AnyClusterTest {
     std::vector<std::string> all = {site_->Setting(changes), "max_allocations=4", "max_queued=4",
                                     "query_interval=1",      "start_timeout=10",  SlowWorkers(500)};
     all.insert(all.end(), settings.begin(), settings.end());
-    hash_ = LocalHash(campaign_);
+    if (hash_.empty()) hash_ = LocalHash(campaign_);
     return SubmitArguments(campaign_, "here", all);
   }
   // Full strength: one worker in each of four jobs.
