@@ -114,7 +114,8 @@ TEST_P(AnyClusterDrill, ANodeDies) {
 }
 
 TEST_P(AnyClusterDrill, TimeLimitsAreHit) {
-  Begin({"time_limit=0:20"});
+  campaign_.generations = 60;
+  Begin({"time_limit=0:40"});
   const std::map<std::string, json> before = Connected(Status());
   for (const auto& [job, allocation] : before) ExpectBackAtStrengthWithout(job);
   ExpectTheLocalResult();
