@@ -65,8 +65,8 @@ Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, b
       context.out << fmt::format("# {}\n{}\n{}\n", job.what, job.script,
                                  words.empty() ? "" : fmt::format("# {}: {}\n", test, words));
     if (!answer && outcome) {
-      outcome = Error{answer.error().kind,
-                      fmt::format("{} could not start: {}{}", job.what, words, slurm::NextStep(words))};
+      outcome = Error{answer.error().kind, fmt::format("{} could not start: {}{}", job.what, words,
+                                                       slurm::NextStep(words, campaign.cluster()))};
     }
   }
   context.out << std::flush;
@@ -104,9 +104,9 @@ Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& 
   Result<std::string> job = ClientOf(context, campaign)->Submit(campaign.master_script(), {});
   if (!job) {
     const std::string& words = job.error().message;
-    return Error{job.error().kind,
-                 fmt::format("{}{}. The campaign is made; try again with: {} resume {}", words,
-                             slurm::NextStep(words), context.program, PastedPath(directory))};
+    return Error{job.error().kind, fmt::format("{}{}. The campaign is made; try again with: {} resume {}",
+                                               words, slurm::NextStep(words, campaign.cluster()),
+                                               context.program, PastedPath(directory))};
   }
   return job;
 }

@@ -106,18 +106,21 @@ Result<Cluster> Parse(std::string_view text, const std::string& file_name);
 Result<Cluster> Shipped(std::string_view name) {
   if (const ShippedText* shipped = FindByName(kShippedClusters, name))
     return Parse(shipped->text, fmt::format("{}.toml", name));
-  return InvalidInput(fmt::format("{} (or give the path of a cluster file: ./lab.toml)",
-                                  UnknownName("cluster", name, kShippedClusters)));
+  return InvalidInput(UnknownName("shipped cluster", name, kShippedClusters) +
+                      " (a cluster file is given by its path: ./lab.toml)");
 }
 
 Result<Cluster> Parse(std::string_view text, const std::string& file_name) {
   TRY(const std::vector<Assignment> assignments, ReadToml(text, file_name));
   Cluster cluster;
+  std::string base;
   for (const Assignment& assignment : assignments) {
+    if (assignment.path == "like") base = TextOf(assignment.value);
     // Hosts need nothing else.
-    if (assignment.path != "like" && assignment.path != "hosts") continue;
-    TRY(cluster, Shipped(assignment.path == "hosts" ? "ssh" : TextOf(assignment.value)));
-    break;
+    if (assignment.path == "hosts" && base.empty()) base = "ssh";
+  }
+  if (!base.empty()) {
+    TRY(cluster, Shipped(base));
   }
   for (const Assignment& assignment : assignments) {
     TRY(AssignNamed(assignment, cluster));
@@ -156,6 +159,8 @@ Status CheckPlaceholders(const Cluster& cluster) {
 
 Status Check(const Cluster& cluster) {
   const bool scheduler = cluster.connect.empty();
+  if (!cluster.hosts.empty() && (scheduler || !cluster.submit.empty()))
+    return InvalidInput("hosts have no scheduler: leave out hosts, or like and submit");
   if (!scheduler && cluster.hosts.empty())
     return InvalidInput("hosts is missing: hosts = [\"node7:16\", ...]");
   const std::vector<std::string_view> needed =
@@ -168,7 +173,9 @@ Status Check(const Cluster& cluster) {
   }
   if (const std::string why = scheduler ? WhyNoJobId(cluster.job_id) : ""; !why.empty())
     return InvalidInput(fmt::format("job_id = '{}' {}", cluster.job_id, why));
-  if (cluster.task_id.empty() == cluster.directives.contains("array"))
+  const auto array = cluster.directives.find("array");
+  const bool arrays = array != cluster.directives.end() && !array->second.empty();
+  if (cluster.task_id.empty() == arrays)
     return InvalidInput("give both task_id and directives.array, or neither");
   return CheckPlaceholders(cluster);
 }

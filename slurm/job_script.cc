@@ -90,7 +90,7 @@ Result<std::string> Directives(std::vector<std::pair<std::string, std::string>> 
       return InvalidInput("slurm.extra has '" + value + "': give options as on the command line of " +
                           ProgramOf(cluster.submit) + ", --exclusive");
     const auto line = cluster.directives.find(name);
-    if (line == cluster.directives.end())
+    if (line == cluster.directives.end() || line->second.empty())
       return InvalidInput("slurm." + name + " = " + value + ": " + cluster.name +
                           " has no directive for it in its cluster file");
     lines += (lines.empty() ? "" : "\n") + Replaced(line->second, "@VALUE@", value);

@@ -50,6 +50,7 @@ void PoolPolicy::Submitted(const std::string& job, TimePoint now) {
   }
   query_error_.clear();
   full_.clear();
+  hopeless_.clear();
   // Not seen by a query that was under way.
   last_query_ = now;
 }
@@ -70,9 +71,7 @@ void PoolPolicy::Hopeless(const std::string& message) {
 }
 
 std::string PoolPolicy::GivenUp() const {
-  const bool connected =
-      std::ranges::any_of(allocations_, [](const auto& entry) { return entry.second.workers > 0; });
-  if (!hopeless_.empty() && !connected) return hopeless_;
+  if (!hopeless_.empty() && allocations_.empty()) return hopeless_;
   if (heard_any_ || cluster_.give_up_after == 0 || failures_in_a_row_ < cluster_.give_up_after) return "";
   return "gave up after " + std::to_string(failures_in_a_row_) +
          (failures_in_a_row_ == 1 ? " failed start" : " failed starts in a row") +
@@ -87,6 +86,7 @@ void PoolPolicy::Adopt(const JobStatus& job, TimePoint now) {
 void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
   query_running_ = false;
   query_error_.clear();
+  hopeless_.clear();
   last_query_ = now;
   for (auto& [id, allocation] : allocations_) ++allocation.missing;
   for (const JobStatus& job : jobs) {

@@ -68,7 +68,7 @@ class PoolPolicy {
   void SubmissionFailed(const std::string& message, TimePoint now);
   // There was no room: no failure, to be tried again.
   void Full(const std::string& message, TimePoint now);
-  // Nothing that is submitted will ever start.
+  // Nothing can be submitted or looked at any more, until something is.
   void Hopeless(const std::string& message);
   // A job of an earlier master that is still there.
   void Adopt(const JobStatus& job, TimePoint now);

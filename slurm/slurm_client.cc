@@ -49,50 +49,58 @@ bool IsOf(const std::string& job, const std::string& id) {
 constexpr int kTestOnlyCalls = 2;
 
 struct Advice {
+  std::string_view scheduler;
   std::string_view words;
   std::string_view step;
 };
 // Words of Slurm 22.05 to 23.11 (slurm_errno.c, squeue(1) "JOB REASON CODES").
 constexpr std::array kAdvice = {
-    Advice{"no sbatch", "run this on a login node of the cluster, or put Slurm's commands into PATH"},
-    Advice{"nvalid account",
+    Advice{"Slurm", "no sbatch",
+           "run this on a login node of the cluster, or put Slurm's commands into PATH"},
+    Advice{"Slurm", "nvalid account",
            "name yours: --slurm account=NAME (`sacctmgr show associations user=$USER` lists them)"},
-    Advice{"InvalidAccount",
+    Advice{"Slurm", "InvalidAccount",
            "name yours: --slurm account=NAME (`sacctmgr show associations user=$USER` lists them)"},
-    Advice{"nvalid partition", "choose another: --slurm partition=NAME (`sinfo -s` lists them)"},
-    Advice{"nvalid qos", "choose another: --slurm qos=NAME (`sacctmgr show qos` lists them)"},
-    Advice{"time limit is invalid",
+    Advice{"Slurm", "nvalid partition", "choose another: --slurm partition=NAME (`sinfo -s` lists them)"},
+    Advice{"Slurm", "nvalid qos", "choose another: --slurm qos=NAME (`sacctmgr show qos` lists them)"},
+    Advice{"Slurm", "time limit is invalid",
            "ask for less: --slurm time_limit=HH:MM:SS (`sinfo -o '%P %l'` shows the limits)"},
-    Advice{"PartitionTimeLimit",
+    Advice{"Slurm", "PartitionTimeLimit",
            "ask for less: --slurm time_limit=HH:MM:SS (`sinfo -o '%P %l'` shows the limits)"},
-    Advice{"nvalid feature", "correct --slurm constraint=FEATURES (`sinfo -o '%N %f'` lists them)"},
-    Advice{"node configuration is not available",
+    Advice{"Slurm", "nvalid feature", "correct --slurm constraint=FEATURES (`sinfo -o '%N %f'` lists them)"},
+    Advice{"Slurm", "node configuration is not available",
            "no node has what is asked for: lower memory, workers_per_allocation or constraint (`sinfo -o '%P "
            "%c %m %f'`)"},
-    Advice{"PartitionNodeLimit", "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
-    Advice{"PartitionConfig", "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
-    Advice{"BadConstraints", "no node has what is asked for: correct --slurm constraint=FEATURES"},
-    Advice{"accounting/QOS policy",
+    Advice{"Slurm", "PartitionNodeLimit",
+           "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
+    Advice{"Slurm", "PartitionConfig",
+           "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
+    Advice{"Slurm", "BadConstraints", "no node has what is asked for: correct --slurm constraint=FEATURES"},
+    Advice{"Slurm", "accounting/QOS policy",
            "a limit of the site: lower --slurm max_allocations and max_queued, or wait"},
-    Advice{"SubmitJob", "a limit of the site: lower --slurm max_allocations and max_queued, or wait"},
-    Advice{"temporarily unable to accept job",
+    Advice{"Slurm", "SubmitJob",
+           "a limit of the site: lower --slurm max_allocations and max_queued, or wait"},
+    Advice{"Slurm", "temporarily unable to accept job",
            "the cluster's queue is full: wait, or lower --slurm max_queued"},
-    Advice{"Resource temporarily unavailable", "the cluster's queue is full: try again later"},
-    Advice{"contact slurm controller", "what runs goes on; `scontrol ping` says when it is back"},
+    Advice{"Slurm", "Resource temporarily unavailable", "the cluster's queue is full: try again later"},
+    Advice{"Slurm", "contact slurm controller", "what runs goes on; `scontrol ping` says when it is back"},
     // Grid Engine 8.1.9, PBS, OpenSSH 9.2.
-    Advice{"unknown queue", "choose another: --slurm partition=NAME (`qconf -sql` lists them)"},
-    Advice{"parallel environment", "name yours in a cluster file: docs/sge.md (`qconf -spl` lists them)"},
-    Advice{"variable SGE_ROOT", "load Grid Engine's settings first: its common/settings.sh"},
-    Advice{"Unknown queue", "choose another: --slurm partition=NAME (`qstat -Q` lists them)"},
-    Advice{"Host key verification failed", "log in by hand once, where ssh asks: ssh HOST"},
-    Advice{"Permission denied (", "`ssh HOST true` must work without a password: ssh-copy-id HOST"},
+    Advice{"Grid Engine", "unknown queue",
+           "choose another: --slurm partition=NAME (`qconf -sql` lists them)"},
+    Advice{"Grid Engine", "parallel environment",
+           "name yours in a cluster file: docs/sge.md (`qconf -spl` lists them)"},
+    Advice{"Grid Engine", "variable SGE_ROOT", "load Grid Engine's settings first: its common/settings.sh"},
+    Advice{"PBS", "Unknown queue", "choose another: --slurm partition=NAME (`qstat -Q` lists them)"},
+    Advice{"ssh", "Host key verification failed", "log in by hand once, where ssh asks: ssh HOST"},
+    Advice{"ssh", "Permission denied (", "`ssh HOST true` must work without a password: ssh-copy-id HOST"},
 };
 
 }  // namespace
 
-std::string NextStep(std::string_view words) {
+std::string NextStep(std::string_view words, const Cluster& cluster) {
   for (const Advice& advice : kAdvice) {
-    if (words.find(advice.words) != std::string_view::npos) return "; " + std::string(advice.step);
+    if (advice.scheduler == cluster.name && words.find(advice.words) != std::string_view::npos)
+      return "; " + std::string(advice.step);
   }
   return "";
 }
@@ -107,8 +115,11 @@ Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& comman
   std::vector<std::string> line = {"/bin/bash", "-o", "pipefail", "-c", command, program};
   line.insert(line.end(), arguments.begin(), arguments.end());
   Result<CallOutput> output = CallProcess(line, input, options);
+  const auto says = [&](const char* what) { return output->err.find(program + what) != std::string::npos; };
   constexpr int kNoSuchProgram = 127;
-  if (!output || output->exit_code != kNoSuchProgram) return output;
+  if (!output || output->exit_code != kNoSuchProgram ||
+      !(says(": command not found") || says(": No such file or directory")))
+    return output;
   return Error{ErrorKind::kNotFound,
                "there is no " + program + " in PATH: is " + cluster.name + " installed on this machine?"};
 }

@@ -32,7 +32,7 @@ class SlurmClient {
 };
 
 // What a person can do about a scheduler's words, as "; do this"; "" when nothing is known.
-std::string NextStep(std::string_view words);
+std::string NextStep(std::string_view words, const Cluster& cluster = SlurmCluster());
 
 // By the commands of a cluster.
 class CommandLineSlurm final : public SlurmClient {

@@ -113,16 +113,16 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
     reported_trouble_ = std::move(trouble);
   }
   if (const std::string why = policy_.GivenUp(); !why.empty())
-    return Error{ErrorKind::kIo, why + NextStep(why)};
+    return Error{ErrorKind::kIo, why + NextStep(why, options_.cluster)};
   return std::vector<pid_t>{};
 }
 
 void SlurmPool::CarryOut(const Decisions& decisions) {
   PostCancel(decisions.cancel);
-  // Equal ones are an array, where there are arrays.
-  const int wanted = decisions.submit - submitting_;
-  const int at_once = options_.cluster.task_id.empty() ? 1 : std::max(1, wanted);
-  for (int i = 0; i < wanted; i += at_once) PostSubmit(at_once, decisions.exclude_nodes);
+  // Equal ones are an array; where there are no arrays, the next one waits for the answer to the last.
+  int wanted = decisions.submit - submitting_;
+  if (options_.cluster.task_id.empty()) wanted = submitting_ > 0 ? 0 : std::min(wanted, 1);
+  if (wanted > 0) PostSubmit(wanted, decisions.exclude_nodes);
   if (decisions.query) PostQuery();
 }
 
@@ -176,6 +176,7 @@ void SlurmPool::PostQuery() {
         OnQueue(std::move(*jobs), now);
       } else {
         policy_.QueryFailed(jobs.error().message, now);
+        if (jobs.error().kind == ErrorKind::kNotFound) policy_.Hopeless(jobs.error().message);
       }
     };
   });
@@ -235,7 +236,7 @@ void SlurmPool::Observe(const PoolView& view, TimePoint now) {
     int busy = 0;
     for (const PoolView::Worker& worker : view.workers) {
       // "job:restart:node", as slurm/worker.sbatch passes it.
-      if (worker.allocation.substr(0, worker.allocation.find(':')) != allocation.job) continue;
+      if (!worker.allocation.starts_with(allocation.job + ":")) continue;
       ++connected;
       if (worker.busy) ++busy;
     }
@@ -245,7 +246,7 @@ void SlurmPool::Observe(const PoolView& view, TimePoint now) {
 
 std::string SlurmPool::Trouble(TimePoint now) const {
   const std::string trouble = policy_.Trouble(now);
-  return trouble.empty() ? "" : trouble + NextStep(trouble);
+  return trouble.empty() ? "" : trouble + NextStep(trouble, options_.cluster);
 }
 
 std::vector<AllocationView> SlurmPool::Allocations() const {

@@ -29,40 +29,54 @@ start_of() {
   { read -r stat <"/proc/$1/stat"; } 2>/dev/null || return
   set -- ${stat##*) }
   session=$4 start=${20}
+  [ "$1" != Z ]
 }
 )sh";
 constexpr std::string_view kStart = R"sh(
+unset GAUNTLET_BATCH_JOB
 setsid /bin/bash -c "$script" </dev/null >/dev/null 2>&1 &
 start_of $! && echo "gauntlet:$!.$start@$GAUNTLET_HOST"
 )sh";
 constexpr std::string_view kLook = R"sh(
-for file in $(grep -lsz "^GAUNTLET_HOST=$GAUNTLET_HOST\$" /proc/[0-9]*/environ); do
-  pid=${file#/proc/} pid=${pid%/environ}
-  start_of "$pid" && [ "$session" = "$pid" ] || continue
-  name=$(tr '\0' '\n' <"$file" 2>/dev/null | sed -n 's/^GAUNTLET_JOB=//p')
-  echo "gauntlet:$pid.$start@$GAUNTLET_HOST|RUNNING|$GAUNTLET_HOST||$name"
-done
+for file in $(grep -lszxF "GAUNTLET_HOST=$GAUNTLET_HOST" /proc/[0-9]*/environ); do
+  pid=${file#/proc/} pid=${pid%/environ} job= name=
+  while IFS= read -r -d '' entry; do
+    case $entry in
+      GAUNTLET_BATCH_JOB=*) job=${entry#*=} ;;
+      GAUNTLET_JOB=*) name=${entry#*=} ;;
+    esac
+  done <"$file"
+  [ -z "$job" ] && start_of "$pid" && [ "$session" = "$pid" ] && job=$pid.$start@$GAUNTLET_HOST
+  [ -n "$job" ] && echo "gauntlet:$job|RUNNING|$GAUNTLET_HOST||$name"
+done 2>/dev/null | sort -u
 echo gauntlet:end
 )sh";
 constexpr std::string_view kCancel = R"sh(
-signal_jobs() {
-  for job in $jobs; do
-    start_of "${job%.*}" && [ "$start" = "${job#*.}" ] && kill "$1" $("$2" "${job%.*}")
+leader_of() { start_of "${1%%.*}" && [ "$start" = "${1#*.}" ] && echo "${1%%.*}"; }
+all_of() {
+  leader_of "$1"
+  for file in $(grep -lszxF "GAUNTLET_BATCH_JOB=$1@$GAUNTLET_HOST" /proc/[0-9]*/environ); do
+    pid=${file#/proc/}
+    echo "${pid%/environ}"
   done
 }
-all_of() { ps -o pid= -s "$1"; }
-signal_jobs -TERM echo
-(sleep 30; signal_jobs -KILL all_of) </dev/null >/dev/null 2>&1 &
+for job in $jobs; do kill -TERM $(leader_of "$job" || all_of "$job"); done 2>/dev/null
+(sleep 30; for job in $jobs; do kill -KILL $(all_of "$job"); done) </dev/null >/dev/null 2>&1 &
 echo gauntlet:end
 )sh";
 
-// Words of OpenSSH with which it is of no use to try again.
-bool IsRefusal(std::string_view words) {
+// The line in which OpenSSH says that it is of no use to try again; "" when none does.
+std::string Refusal(const std::string& text) {
   constexpr std::array<std::string_view, 5> kRefusals = {
       "Permission denied", "Host key verification failed", "Too many authentication failures",
-      "No supported authentication methods", "Could not resolve hostname"};
-  return std::ranges::any_of(kRefusals,
-                             [&](std::string_view refusal) { return words.find(refusal) != words.npos; });
+      "No supported authentication methods", "Name or service not known"};
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    for (const std::string_view refusal : kRefusals) {
+      if (line.find(refusal) != std::string::npos) return std::string(Trimmed(line));
+    }
+  }
+  return "";
 }
 
 std::string LastLine(std::string_view text) {
@@ -104,11 +118,11 @@ Result<std::vector<std::string>> SshHosts::Ask(Host& host, const Variables& vari
   }
   host.silence = output ? "" : output.error().message;
   if (output && (output->exit_code != 0 || lines.empty())) {
+    host.refusal = Refusal(output->err);
     host.silence = LastLine(output->err.empty() ? output->out : output->err);
     if (host.silence.empty()) host.silence = fmt::format("no answer, exit code {}", output->exit_code);
   }
-  if (IsRefusal(host.silence) || (!output && output.error().kind == ErrorKind::kNotFound))
-    host.refusal = host.silence;
+  if (!output && output.error().kind == ErrorKind::kNotFound) host.refusal = host.silence;
   if (host.silence.empty()) return lines;
   return Error{ErrorKind::kIo, host.silence};
 }
@@ -124,6 +138,10 @@ void SshHosts::Look(Host& host) {
   }
 }
 
+bool SshHosts::AllRefuse() const {
+  return std::ranges::none_of(hosts_, [](const Host& host) { return host.refusal.empty(); });
+}
+
 // What is wrong with which hosts.
 std::string SshHosts::Troubles() const {
   std::string troubles;
@@ -137,7 +155,7 @@ std::string SshHosts::Troubles() const {
 }
 
 Result<std::string> SshHosts::Submit(const std::string& script, const std::vector<std::string>& /*options*/) {
-  static const std::regex kName("\n# ([A-Za-z0-9._-]+)");
+  static const std::regex kName("\n# (gauntlet-[A-Za-z0-9._-]+)");
   std::smatch name;
   if (!std::regex_search(script, name, kName))
     return InvalidInput("the script of a job on a host begins with a line `# @JOB_NAME@`");
@@ -155,8 +173,7 @@ Result<std::string> SshHosts::Submit(const std::string& script, const std::vecto
     host->jobs.push_back({job->front(), name.str(1), "RUNNING", JobPhase::kRunning, "", host->name});
     return job->front();
   }
-  if (std::ranges::none_of(hosts_, [](const Host& host) { return host.refusal.empty(); }))
-    return Error{ErrorKind::kNotFound, "no host can be used" + Troubles()};
+  if (AllRefuse()) return Error{ErrorKind::kNotFound, "no host can be used" + Troubles()};
   return Error{ErrorKind::kInUse, "no host has room for another job" + Troubles()};
 }
 
@@ -174,7 +191,7 @@ Result<std::vector<JobStatus>> SshHosts::Queue(const std::string& name_prefix) {
   }
   const bool some = std::ranges::any_of(hosts_, [](const Host& host) { return host.silence.empty(); });
   if (some || !jobs.empty()) return jobs;
-  return Error{ErrorKind::kIo, "no host answers" + Troubles()};
+  return Error{AllRefuse() ? ErrorKind::kNotFound : ErrorKind::kIo, "no host answers" + Troubles()};
 }
 
 Status SshHosts::Cancel(const std::vector<std::string>& jobs) {

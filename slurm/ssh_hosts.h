@@ -11,9 +11,10 @@
 
 namespace gauntlet::slurm {
 
-// A job is a session of processes on a host, with the job's name in the environment of its first process
-// (GAUNTLET_JOB), and its id "PID.START@HOST": the process and the tick of the host's clock at which it
-// started, so that a number that was given again is no job of ours. A host takes as many jobs of this user as
+// A job's first process leads a session and has the job's name in its environment (GAUNTLET_JOB); the id is
+// "PID.START@HOST": the process and the tick of the host's clock at which it started, so that a number that
+// was given again is no job of ours. Whatever it starts has the id in its environment (slurm/run_job.sh), and
+// the job lives as long as one of them. A host takes as many jobs of this user as
 // its slots hold. One that refuses (a wrong key, an unknown host key) is asked no more by this object; one
 // that does not answer is asked again, and until then has the jobs that it had. Thread-safety: one thread.
 class SshHosts final : public SlurmClient {
@@ -42,6 +43,7 @@ class SshHosts final : public SlurmClient {
   using Variables = std::vector<std::pair<std::string, std::string>>;
   Result<std::vector<std::string>> Ask(Host& host, const Variables& variables, std::string_view program);
   void Look(Host& host);
+  bool AllRefuse() const;
   std::string Troubles() const;
 
   Cluster cluster_;

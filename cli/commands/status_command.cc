@@ -151,7 +151,7 @@ void AddJobs(CommandContext& context, const std::string& directory, Json& status
   const slurm::SlurmCampaign& campaign = **submitted;
   const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*ClientOf(context, campaign));
   if (!jobs) {
-    status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
+    status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message, campaign.cluster());
     return;
   }
   status["allocations"] = Json::array();

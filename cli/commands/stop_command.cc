@@ -24,8 +24,10 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
       submitted ? (*submitted)->CancelJobs(*ClientOf(context, **submitted))
                 : Result<std::vector<std::string>>(submitted.error());
   if (!cancelled) {
-    PrintMessage(context, fmt::format("{}{}; jobs of the campaign may be left: try again",
-                                      cancelled.error().message, slurm::NextStep(cancelled.error().message)));
+    PrintMessage(
+        context,
+        fmt::format("{}{}; jobs of the campaign may be left: try again", cancelled.error().message,
+                    submitted ? slurm::NextStep(cancelled.error().message, (*submitted)->cluster()) : ""));
     return false;
   }
   if (!cancelled->empty())

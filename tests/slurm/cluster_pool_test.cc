@@ -77,6 +77,34 @@ TEST_F(ClusterPoolTest, DoesNotGiveUpOnceAWorkerHasSpoken) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(Later(seconds(900)), "");
 }
 
+TEST_F(ClusterPoolTest, WhereNothingCanBeSubmittedItEndsAtOnceUnlessSomethingLives) {
+  Begin("");
+  EXPECT_EQ(Later(), "");
+  cluster_.hopeless = "there is no qsub in PATH";
+  view_.unfinished_runs = 100;
+  EXPECT_EQ(Later(), "") << "a job waits";
+  cluster_.hopeless = "";
+  EXPECT_EQ(Later(seconds(30)), "");
+  cluster_.jobs.clear();
+  EXPECT_EQ(Later(), "");
+  EXPECT_EQ(Later(), "") << "it could submit again meanwhile";
+  cluster_.jobs.clear();
+  cluster_.hopeless = "there is no qsub in PATH";
+  std::string why;
+  for (int i = 0; i < 20 && why.empty(); ++i) why = Later(seconds(100));
+  EXPECT_EQ(why, "there is no qsub in PATH");
+}
+
+TEST_F(ClusterPoolTest, WorkersAreKnownByJobsWhoseIdsHaveColons) {
+  Begin("");
+  cluster_.id_prefix = "lab:";
+  EXPECT_EQ(Later(), "");
+  view_.workers = {{.allocation = "lab:1:0:n", .busy = true}};
+  EXPECT_EQ(Later(), "");
+  ASSERT_THAT(pool_->Allocations(), SizeIs(1));
+  EXPECT_EQ(pool_->Allocations()[0].workers, 1);
+}
+
 TEST_F(ClusterPoolTest, SlurmIsNeverGivenUp) {
   Begin("give_up_after = 0");
   cluster_.refusal = "denied";

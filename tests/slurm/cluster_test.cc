@@ -32,8 +32,9 @@ TEST(FindCluster, KnowsWhatIsShipped) {
     EXPECT_FALSE(cluster->states.empty());
     EXPECT_EQ(cluster->give_up_after, std::string(name) == "slurm" ? 0 : 20);
   }
-  EXPECT_EQ(FindCluster("pbd").error().message,
-            "unknown cluster 'pbd'; did you mean 'pbs'? (or give the path of a cluster file: ./lab.toml)");
+  EXPECT_EQ(
+      FindCluster("pbd").error().message,
+      "unknown shipped cluster 'pbd'; did you mean 'pbs'? (a cluster file is given by its path: ./lab.toml)");
   EXPECT_EQ(FindCluster("ssh").error().message,
             "cluster = ssh: hosts is missing: hosts = [\"node7:16\", ...]");
   EXPECT_THAT(FindCluster("./no-such.toml").error().message, HasSubstr("cluster = ./no-such.toml: "));
@@ -75,8 +76,9 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
   EXPECT_EQ(ErrorOf("like = \"sge\"\njob_id = 'job'"),
             "lab.toml: job_id = 'job' has no group in brackets, which is the id");
   EXPECT_THAT(ErrorOf("like = \"sge\"\njob_id = '('"), HasSubstr("job_id = '(' is no regular expression"));
-  EXPECT_EQ(ErrorOf("like = \"sgi\""),
-            "unknown cluster 'sgi'; did you mean 'sge'? (or give the path of a cluster file: ./lab.toml)");
+  EXPECT_EQ(
+      ErrorOf("like = \"sgi\""),
+      "unknown shipped cluster 'sgi'; did you mean 'sge'? (a cluster file is given by its path: ./lab.toml)");
   EXPECT_EQ(ErrorOf("like = \"sge\"\nsubmitt = 'a'"),
             "lab.toml:2:1: unknown key of a cluster file 'submitt'; did you mean 'submit'?");
   EXPECT_EQ(
@@ -86,6 +88,10 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
             "lab.toml:2:1: queued is text, expected a list of texts");
   EXPECT_EQ(ErrorOf("like = \"sge\"\ngive_up_after = -1"),
             "lab.toml:2:1: give_up_after = -1 is out of range, allowed 0 to 1000000");
+  EXPECT_EQ(ErrorOf("like = \"sge\"\nhosts = [\"a\"]"),
+            "lab.toml: hosts have no scheduler: leave out hosts, or like and submit");
+  EXPECT_EQ(ErrorOf("hosts = [\"a\"]\nlike = \"ssh\""), "");
+  EXPECT_EQ(ErrorOf("like = \"sge\"\ntask_id = ''\ndirectives.array = ''"), "") << "a site without arrays";
   EXPECT_EQ(ErrorOf("hosts = \"a\""), "lab.toml:1:1: hosts is text, expected a list of texts");
   for (const char* host : {"-oProxyCommand=x", "a:0", "a b", "a:b", ""})
     EXPECT_THAT(ErrorOf(std::string("hosts = [\"") + host + "\"]"), HasSubstr("give NAME or NAME:SLOTS"))

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -150,6 +151,44 @@ TEST_F(SshHostsTest, HostsAreAskedAtTheSameTime) {
   std::ofstream(scratch_ / "meet") << "";
   EXPECT_TRUE(SshHosts(cluster_, 1).Queue("").ok()) << "each waits until the other is asked";
   std::filesystem::remove(scratch_ / "meet");
+}
+
+// A shell that was killed leaves its worker; a daemon in a job is no job of its own.
+TEST_F(SshHostsTest, WhatAJobStartedBelongsToIt) {
+  SshHosts hosts(cluster_, 1);
+  const std::string script =
+      "#!/bin/bash\n# gauntlet-ab12-w1 \nread -r stat </proc/$$/stat\nset -- ${stat##*) }\n"
+      "export GAUNTLET_BATCH_JOB=$$.${20}@$GAUNTLET_HOST\n"
+      "setsid sleep 60 &\nsleep 60 & wait\n";
+  const std::string job = *hosts.Submit(script, {});
+  const auto shown = [&] {
+    const Result<std::vector<JobStatus>> jobs = hosts.Queue("gauntlet-ab12-");
+    std::string ids;
+    for (const JobStatus& one : jobs ? *jobs : std::vector<JobStatus>()) ids += one.id + "\n";
+    return ids;
+  };
+  EXPECT_EQ(shown(), job + "\n");
+  kill(std::stoi(job), SIGKILL);
+  EXPECT_TRUE(testing_support::Eventually([&] { return !testing_support::Alive(std::stoi(job)); },
+                                          std::chrono::seconds(10)));
+  EXPECT_EQ(shown(), job + "\n") << "what is left of it";
+  ASSERT_TRUE(hosts.Cancel({job}).ok());
+  EXPECT_TRUE(testing_support::Eventually([&] { return shown().empty(); }, std::chrono::seconds(10)));
+}
+
+TEST_F(SshHostsTest, ManyKeysAreARefusalAndANameServerThatIsAwayIsNot) {
+  Fail(alpha_,
+       "Received disconnect from 10.0.0.1 port 22:2: Too many authentication failures\nDisconnected from "
+       "10.0.0.1");
+  Fail(beta_, "ssh: Could not resolve hostname beta: Temporary failure in name resolution");
+  SshHosts hosts(cluster_, 1);
+  EXPECT_THAT(hosts.Queue("").error().message,
+              AllOf(HasSubstr(alpha_ + " is out until `gauntlet resume`: Received disconnect"),
+                    HasSubstr(beta_ + " does not answer: ssh: Could not resolve")));
+  Fail(beta_, "me@beta: Permission denied (publickey).");
+  EXPECT_EQ(hosts.Queue("").error().kind, ErrorKind::kNotFound) << "nobody is left";
+  Mend(alpha_);
+  Mend(beta_);
 }
 
 TEST_F(SshHostsTest, NobodyThereIsAnError) {

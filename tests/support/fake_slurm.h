@@ -23,7 +23,9 @@ class FakeSlurm {
   int queries = 0;
 
   int next_id = 1;
-  std::string refusal;           // of the next submissions and tests; "" = accepted
+  std::string refusal;   // of the next submissions and tests; "" = accepted
+  std::string hopeless;  // likewise, for ever
+  std::string id_prefix;
   bool loses_answers = false;    // accepts, but the answer does not arrive
   bool deaf = false;             // cancellations do not arrive
   std::string controller_error;  // of queries
@@ -58,9 +60,10 @@ class FakeSlurm {
                                const std::vector<std::string>& arguments) override {
       const std::lock_guard lock(cluster_.mutex_);
       if (!cluster_.refusal.empty()) return InvalidInput(cluster_.refusal);
+      if (!cluster_.hopeless.empty()) return Error{ErrorKind::kNotFound, cluster_.hopeless};
       cluster_.submitted.push_back(script);
       cluster_.options.push_back(arguments);
-      const std::string id = std::to_string(cluster_.next_id++);
+      const std::string id = cluster_.id_prefix + std::to_string(cluster_.next_id++);
       const std::string name = After(script, "--job-name=");
       const std::string array = After(script, "--array=1-");
       const int tasks = array.empty() ? 1 : std::stoi(array);
