@@ -71,7 +71,9 @@ void PoolPolicy::Hopeless(const std::string& message) {
 }
 
 std::string PoolPolicy::GivenUp() const {
-  if (!hopeless_.empty() && allocations_.empty()) return hopeless_;
+  const bool lives =
+      std::ranges::any_of(allocations_, [](const auto& entry) { return !entry.second.cancelled; });
+  if (!hopeless_.empty() && !lives) return hopeless_;
   if (heard_any_ || cluster_.give_up_after == 0 || failures_in_a_row_ < cluster_.give_up_after) return "";
   return "gave up after " + std::to_string(failures_in_a_row_) +
          (failures_in_a_row_ == 1 ? " failed start" : " failed starts in a row") +

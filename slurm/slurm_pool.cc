@@ -184,10 +184,13 @@ void SlurmPool::PostQuery() {
 
 void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return;
+  std::vector<std::string> news;
   for (const std::string& job : jobs) {
-    if (std::find(cancelled_.begin(), cancelled_.end(), job) == cancelled_.end()) cancelled_.push_back(job);
+    if (std::ranges::count(cancelled_, job) == 0) news.push_back(job);
   }
-  Report(fmt::format("cancelled {} {}", Plural(jobs.size(), "job"), fmt::join(jobs, ", ")));
+  cancelled_.insert(cancelled_.end(), news.begin(), news.end());
+  if (!news.empty())
+    Report(fmt::format("cancelled {} {}", Plural(news.size(), "job"), fmt::join(news, ", ")));
   Post([this, jobs]() -> std::function<void(TimePoint)> {
     return [this, done = client_->Cancel(jobs)](TimePoint now) {
       if (!done) policy_.QueryFailed(done.error().message, now);
