@@ -16,7 +16,7 @@
 namespace gauntlet::slurm {
 namespace {
 
-constexpr std::chrono::seconds kDeadline{20};
+constexpr std::chrono::seconds kDeadline{60};
 
 // Before each line that is meant for us: shells greet their users in many ways.
 constexpr std::string_view kMark = "gauntlet:";
