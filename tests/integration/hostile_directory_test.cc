@@ -140,7 +140,7 @@ TEST_F(HostileDirectoryTest, WhatIsNoRegularFileIsNeitherFollowedNorWaitedFor) {
           EXPECT_THAT(result.exit_code, testing::AnyOf(0, 2)) << what;
         } else if (file == "slurm.toml" && command == "status") {
           EXPECT_EQ(result.exit_code, 0) << what;
-          EXPECT_THAT(result.out, HasSubstr("Slurm was not asked")) << what;
+          EXPECT_THAT(result.out, HasSubstr("The cluster was not asked")) << what;
         } else {
           EXPECT_THAT(result.exit_code, testing::AnyOf(2, 3)) << what;
           EXPECT_THAT(result.err, HasSubstr(path + " is ")) << what;
