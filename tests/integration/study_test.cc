@@ -192,7 +192,7 @@ TEST_F(StudyTest, KeepsToItsDirectory) {
   EXPECT_EQ(longer.exit_code, 2);
   EXPECT_EQ(longer.err, "gauntlet: " + (scratch_ / "s") +
                             " holds a study: its file says how long its searches are, and its workers are of "
-                            "this machine or of Slurm\n");
+                            "this machine or of a cluster\n");
 }
 
 TEST_F(StudyTest, ADryRunMakesNothing) {
