@@ -1,4 +1,4 @@
-// The short ones of the tests on clusters other than Slurm's.
+// The short ones of the drills on clusters other than Slurm's.
 #include <gmock/gmock.h>
 #include <signal.h>
 
