@@ -138,8 +138,9 @@ void SshHosts::Look(Host& host) {
   }
 }
 
-bool SshHosts::AllRefuse() const {
-  return std::ranges::none_of(hosts_, [](const Host& host) { return host.refusal.empty(); });
+Status SshHosts::SomeMayBeAsked() const {
+  if (std::ranges::any_of(hosts_, [](const Host& host) { return host.refusal.empty(); })) return Ok{};
+  return Error{ErrorKind::kNotFound, "no host can be used" + Troubles()};
 }
 
 // What is wrong with which hosts.
@@ -173,7 +174,7 @@ Result<std::string> SshHosts::Submit(const std::string& script, const std::vecto
     host->jobs.push_back({job->front(), name.str(1), "RUNNING", JobPhase::kRunning, "", host->name});
     return job->front();
   }
-  if (AllRefuse()) return Error{ErrorKind::kNotFound, "no host can be used" + Troubles()};
+  TRY(SomeMayBeAsked());
   return Error{ErrorKind::kInUse, "no host has room for another job" + Troubles()};
 }
 
@@ -191,7 +192,8 @@ Result<std::vector<JobStatus>> SshHosts::Queue(const std::string& name_prefix) {
   }
   const bool some = std::ranges::any_of(hosts_, [](const Host& host) { return host.silence.empty(); });
   if (some || !jobs.empty()) return jobs;
-  return Error{AllRefuse() ? ErrorKind::kNotFound : ErrorKind::kIo, "no host answers" + Troubles()};
+  TRY(SomeMayBeAsked());
+  return Error{ErrorKind::kIo, "no host answers" + Troubles()};
 }
 
 Status SshHosts::Cancel(const std::vector<std::string>& jobs) {

@@ -43,7 +43,7 @@ class SshHosts final : public SlurmClient {
   using Variables = std::vector<std::pair<std::string, std::string>>;
   Result<std::vector<std::string>> Ask(Host& host, const Variables& variables, std::string_view program);
   void Look(Host& host);
-  bool AllRefuse() const;
+  Status SomeMayBeAsked() const;
   std::string Troubles() const;
 
   Cluster cluster_;

@@ -266,11 +266,12 @@ TEST_P(SshDrill, AHostThatRefusesIsOutAndTheOtherDoesItAll) {
     return Connected(status).size() == 2 &&
            status.dump().find("beta is out until `gauntlet resume`: ") != std::string::npos;
   })) << master_->Err();
-  ExpectTheLocalResult();
-  const std::string log = ReadFile(site_->file("log/beta.log"));
+  EXPECT_TRUE(Eventually([&] { return !master_->Running(); }, kLongest));
+  const std::string log = ReadFile(site_->file("log/beta.log"));  // before this test looks itself
   std::size_t tries = 0;
   for (std::size_t at = 0; (at = log.find("Failed publickey", at)) != std::string::npos; ++at) ++tries;
   EXPECT_EQ(tries, 1U) << log;
+  ExpectTheLocalResult();
 }
 
 TEST_P(SshDrill, AHostsKeyThatChangedEndsItWhenThereIsNoOther) {
