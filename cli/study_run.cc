@@ -203,9 +203,15 @@ void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options) {
 Result<ExitCode> StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options) {
   if (!options.submit && (!options.slurm.master.empty() || !options.slurm.settings.empty()))
     return InvalidInput("--master and --slurm are for --submit");
-  if (options.dry_run) return PrintForecast(context, study, options.running);
   const std::string directory =
       options.directory.empty() ? DefaultDirectory(study.name, std::time(nullptr)) : options.directory;
+  if (options.dry_run) {
+    if (options.submit) {
+      TRY(const slurm::SlurmSettings settings, ReadSlurmOptions(options.slurm, std::nullopt, study.name));
+      TRY(slurm::SlurmCampaign::Make(settings, directory));
+    }
+    return PrintForecast(context, study, options.running);
+  }
   if (options.submit) return SubmitStudy(context, study, options, directory);
   TRY(BeginStudy(directory, study));
   return RunStudyIn(context, study, {directory, options.running, options.markdown, nullptr, ""});

@@ -53,6 +53,13 @@ const std::vector<SettingsKey<Cluster>>& ClusterKeys() {
   return keys;
 }
 
+std::vector<std::string> AllKeys() {
+  std::vector<std::string> names = {"like", "hosts", "never_starts"};
+  names.insert(names.end(), kPhases.begin(), kPhases.end());
+  for (const SettingsKey<Cluster>& key : ClusterKeys()) names.push_back(key.path);
+  return names;
+}
+
 bool Has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
@@ -89,7 +96,7 @@ Status AssignNamed(const Assignment& assignment, Cluster& cluster) {
     const SettingsKey<Cluster>* key = FindByName(ClusterKeys(), path);
     if (key != nullptr) return Assign(*key, assignment, cluster);
     return InvalidInput(
-        fmt::format("{}: {}", assignment.where, UnknownName("key of a cluster file", path, ClusterKeys())));
+        fmt::format("{}: {}", assignment.where, UnknownName("key of a cluster file", path, AllKeys())));
   }
   const auto* list = std::get_if<OtherToml>(&assignment.value);
   const Status assigned = list != nullptr && list->texts

@@ -179,6 +179,10 @@ TEST_F(StudyTest, KeepsToItsDirectory) {
   const ProcessResult unsubmitted = Gauntlet({"study", scratch_ / "small.toml", "--slurm", "partition=x"});
   EXPECT_EQ(unsubmitted.exit_code, 2);
   EXPECT_EQ(unsubmitted.err, "gauntlet: --master and --slurm are for --submit\n");
+  const std::string none = scratch_ / "none.toml";
+  EXPECT_EQ(
+      Gauntlet({"study", scratch_ / "small.toml", "--submit", "--dry-run", "--slurm", "cluster=" + none}).err,
+      "gauntlet: cluster = " + none + ": cannot open " + none + ": No such file or directory\n");
   EXPECT_EQ(Gauntlet({"show", scratch_ / "s"}).err,
             "gauntlet: " + (scratch_ / "s") + " holds a study: its campaigns are " +
                 (scratch_ / "s/searches") + " and " + (scratch_ / "s/evaluations") +

@@ -84,6 +84,8 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
   EXPECT_EQ(
       ErrorOf("like = \"sge\"\ndirectives.memori = '-l @VALUE@'"),
       "lab.toml:2:12: unknown key of a cluster file 'directives.memori'; did you mean 'directives.memory'?");
+  EXPECT_THAT(ErrorOf("like = \"sge\"\nqueue = ['qw']"), HasSubstr("did you mean 'queued'?"));
+  EXPECT_THAT(ErrorOf("like = \"sge\"\nzzz = 1"), HasSubstr("known: like, hosts, never_starts, queued, "));
   EXPECT_EQ(ErrorOf("like = \"sge\"\nqueued = 'qw'"),
             "lab.toml:2:1: queued is text, expected a list of texts");
   EXPECT_EQ(ErrorOf("like = \"sge\"\ngive_up_after = -1"),
