@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "base/check.h"
@@ -14,6 +16,7 @@
 #include "controllers/foraging/foraging_registry.h"
 #include "controllers/generic/generic_registry.h"
 #include "controllers/partitioning/partitioning_registry.h"
+#include "controllers/requirements/run_judge.h"
 
 namespace gauntlet::controllers {
 namespace {
@@ -54,6 +57,20 @@ Result<const Info*> RowOf(std::string_view what, const std::string& name, const 
   if (const Info* row = FindByName(known, name)) return row;
   return InvalidInput((plugin == nullptr ? "" : "the plug-in " + plugin->file + ": ") +
                       UnknownName(what, name, known));
+}
+
+// The row of an experiment with these requirements. What cannot be read adds nothing.
+const ScenarioInfo* RowWith(const ScenarioInfo& row, const std::string& requirements) {
+  static std::mutex mutex;
+  static std::map<std::pair<const ScenarioInfo*, std::string>, ScenarioInfo> rows;  // never freed
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = rows.try_emplace({&row, requirements}, row);
+  if (!is_new) return &entry->second;
+  if (const auto read = requirements::Requirements::Parse(requirements, row.metrics)) {
+    std::ranges::copy(read->Metrics(), std::back_inserter(entry->second.metrics));
+    entry->second.failing = kTotalFailure;
+  }
+  return &entry->second;
 }
 
 Error TakenName(const PluginInfo& plugin, std::string_view what, std::string_view name) {
@@ -110,7 +127,8 @@ const ScenarioInfo& DeclaredScenario(const sim::RunSettings& settings) {
 }
 
 const ScenarioInfo* FindScenario(const sim::RunSettings& settings) {
-  return FindScenario(settings.scenario, settings.scenario_plugin);
+  const ScenarioInfo* row = FindScenario(settings.scenario, settings.scenario_plugin);
+  return row == nullptr || settings.requirements.empty() ? row : RowWith(*row, settings.requirements);
 }
 
 const ControllerInfo* FindController(const sim::RunSettings& settings) {
@@ -166,6 +184,22 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
     resolved[name] = value;
   }
   return resolved;
+}
+
+Result<sim::Judge> JudgeOf(const sim::RunSpec& spec) {
+  if (spec.requirements.empty()) return sim::Judge(nullptr);
+  TRY(const ScenarioInfo* scenario, ScenarioOf(spec));
+  TRY(const sim::Parameters parameters, ResolveParameters(scenario->parameters, spec.scenario_parameters));
+  TRY(const requirements::RunJudge judge,
+      requirements::RunJudge::Make(spec, *scenario, scenario->requirements(parameters, spec.test_case)));
+  return sim::Judge([judge](const sim::Scenario& run, const sim::Observer& observer,
+                            const std::vector<bool>& under_test, sim::Outcome& outcome) {
+    std::vector<sim::RobotIndex> robots;
+    for (std::size_t i = 0; i < under_test.size(); ++i) {
+      if (under_test[i]) robots.push_back(static_cast<sim::RobotIndex>(i));
+    }
+    judge.Judge(observer, run.arena(), std::move(robots), outcome);
+  });
 }
 
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {

@@ -64,6 +64,10 @@ const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name
 // whole.
 Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos, const sim::Parameters& given);
 
+// What judges the spec's run beyond its scenario; nothing where the spec requires nothing. Errors: as
+// RunJudge::Make's.
+Result<sim::Judge> JudgeOf(const sim::RunSpec& spec);
+
 // Checks names, parameters and the arena, then builds the scenario. Error: the message begins with the broken
 // rule's name and a colon when the test case is at fault.
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec);

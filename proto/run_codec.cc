@@ -103,6 +103,7 @@ void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   message.set_definition(spec.definition);
   message.set_scenario_plugin(spec.scenario_plugin);
   message.set_count_contacts(spec.count_contacts);
+  message.set_requirements(spec.requirements);
 }
 
 // --- Reading specs ---
@@ -323,6 +324,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   for (const std::string& plugin : {spec.plugin, spec.scenario_plugin})
     reader.Require(plugin.empty() || IsSha256(plugin), "a plug-in that is named by no SHA-256");
   spec.definition = wire.definition();
+  spec.requirements = wire.requirements();
   spec.count_contacts = wire.count_contacts();
   if (!reader.ok()) return Corrupt(reader.error());
   return spec;

@@ -91,6 +91,8 @@ std::string SearchIdentity(const SearchSetup& setup) {
   if (!experiment.scenario_plugin.empty())
     identity += fmt::format("scenario_plugin = {}\n", experiment.scenario_plugin);
   if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
+  if (!experiment.requirements.empty())
+    identity += fmt::format("requirements = {}\n", experiment.requirements);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
   if (setup.row->handed_cases()) {

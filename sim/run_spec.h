@@ -26,6 +26,8 @@ struct RunSettings {
   // What the scenario consists of beyond its parameters, in the form that it writes itself; "": it is built
   // in as a whole.
   std::string definition;
+  // What must hold beyond what the scenario says, as controllers/requirements reads it; "": nothing.
+  std::string requirements;
   Parameters scenario_parameters;
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;

@@ -2,6 +2,7 @@
 // test. One object per run.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -66,5 +67,9 @@ class Scenario : public Surroundings {
   virtual bool Finished(const Observer& observer) = 0;
   virtual Outcome Evaluate(const Observer& observer) = 0;
 };
+
+// Adds to the outcome of a run that is over, and may change whether it failed. `under_test`: per robot.
+using Judge = std::function<void(const Scenario& scenario, const Observer& observer,
+                                 const std::vector<bool>& under_test, Outcome& outcome)>;
 
 }  // namespace gauntlet::sim

@@ -336,7 +336,9 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   if (std::optional<std::string> reason = RefuseSwarm(scenario.arena(), *swarm))
     return Refusal(*std::move(reason));
   const std::size_t robots = swarm->size();
-  const auto tested = static_cast<std::size_t>(std::ranges::count(*swarm, true, &RobotSetup::under_test));
+  std::vector<bool> under_test;
+  for (const RobotSetup& robot : *swarm) under_test.push_back(robot.under_test);
+  const auto tested = static_cast<std::size_t>(std::ranges::count(under_test, true));
   if (std::optional<std::string> reason =
           RefuseDisturbances(options.disturbances, {.robots = robots, .under_test = tested})) {
     return Refusal(*std::move(reason));
@@ -365,6 +367,8 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   if (options.probe != nullptr) options.probe->Begin(Phase::kResult);
   Outcome outcome;
   if (result.verdict == Verdict::kCompleted) outcome = scenario.Evaluate(observer);
+  if (options.judge && result.verdict == Verdict::kCompleted && outcome.complaint.empty())
+    options.judge(scenario, observer, under_test, outcome);
   if (std::optional<std::string> complaint = CheckOutcome(outcome, observer.last_tick())) {
     result.verdict = Verdict::kInvalidCommand;
     result.message = *std::move(complaint);

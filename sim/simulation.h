@@ -30,6 +30,7 @@ struct SimulationOptions {
   Disturbances disturbances = {};
   PhaseProbe* probe = nullptr;  // told of every phase
   bool count_contacts = false;
+  Judge judge = nullptr;  // after the scenario
 };
 
 // Simulates the scenario to its end. A function of scenario, seed, physics and disturbances alone. Never

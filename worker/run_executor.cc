@@ -7,16 +7,19 @@ namespace gauntlet::worker {
 
 sim::RunResult Run(const sim::RunSpec& spec) {
   const auto scenario = controllers::CreateScenario(spec);
-  if (!scenario.ok()) {
+  const auto judge = controllers::JudgeOf(spec);
+  if (!scenario.ok() || !judge.ok()) {
     sim::RunResult refused;
     refused.verdict = sim::Verdict::kRefused;
-    refused.message = scenario.error().message;
+    refused.message = (scenario.ok() ? judge.error() : scenario.error()).message;
     sim::SetHashes(refused);
     return refused;
   }
-  return sim::Simulate(
-      *scenario.value(), spec.seed, spec.record_trajectory,
-      {.physics = spec.physics, .disturbances = spec.disturbances, .count_contacts = spec.count_contacts});
+  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory,
+                       {.physics = spec.physics,
+                        .disturbances = spec.disturbances,
+                        .count_contacts = spec.count_contacts,
+                        .judge = *judge});
 }
 
 }  // namespace gauntlet::worker

@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "controllers/registry.h"
+#include "controllers/requirements/measures.h"
 #include "controllers/rows/row_json.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
@@ -192,6 +193,14 @@ std::string DisturbancesText() {
   return "Disturbances (--set PARAMETER=VALUE on any experiment)\n\n" + KeyTable(DisturbanceKeys(), 2);
 }
 
+std::string MeasuresText() {
+  Table table({"measure", "of", "unit", "range", ""});
+  for (const controllers::requirements::MeasureRow& row : controllers::requirements::MeasureRows())
+    table.AddRow({std::string(row.name), row.per_robot ? "each robot" : "the swarm", std::string(row.unit),
+                  std::string(row.range), std::string(row.description)});
+  return "Measures (--set requirements.NAME=FORMULA, docs/requirements.md)\n\n" + table.ToText();
+}
+
 // What `to_json` makes of each item.
 template <typename Items>
 Json ListOf(const Items& items, const auto& to_json) {
@@ -249,13 +258,22 @@ struct Listing {
   std::string (*text)();
   Json (*json)();
 };
+Json MeasureJson(const controllers::requirements::MeasureRow& row) {
+  return {{"name", row.name},
+          {"per_robot", row.per_robot},
+          {"unit", row.unit},
+          {"range", row.range},
+          {"description", row.description}};
+}
+
 constexpr Listing kSections[] = {
     {"experiments", ExperimentsText,
      [] { return ListOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
     {"scenarios", ScenariosText, [] { return ListOf(controllers::Scenarios(), RowJson); }},
     {"controllers", ControllersText, [] { return ListOf(controllers::Controllers(), RowJson); }},
     {"searches", SearchesText, [] { return ListOf(BuiltInCatalogue().searches, SearchJson); }},
-    {"disturbances", DisturbancesText, [] { return ListOf(DisturbanceKeys(), KeyJson); }}};
+    {"disturbances", DisturbancesText, [] { return ListOf(DisturbanceKeys(), KeyJson); }},
+    {"measures", MeasuresText, [] { return ListOf(controllers::requirements::MeasureRows(), MeasureJson); }}};
 
 Result<ExitCode> ListPlugins(CommandContext& context, const ListOptions& options) {
   TRY(const std::vector<std::string> plugins, AddPluginFiles(options.plugins));
@@ -291,13 +309,14 @@ Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
 
 void AddList(CommandParser& parser) {
   const auto [command, options] = parser.Add(
-      "list", "list experiments, scenarios, controllers, searches, disturbances and all parameters", RunList);
+      "list", "list experiments, scenarios, controllers, searches, disturbances, measures and all parameters",
+      RunList);
   std::vector<std::string> names;
   for (const Listing& section : kSections) names.emplace_back(section.name);
   auto* section = command
                       .add_option("SECTION", options.section,
                                   "the section to print: experiments, scenarios, controllers, searches or "
-                                  "disturbances (default: all)")
+                                  "disturbances or measures (default: all)")
                       ->check(CLI::IsMember(names));
   AddValue(command, "--plugin", "LIB.so", options.plugins, "list what this library of yours brings instead");
   command.get_option("--plugin")->excludes(section);

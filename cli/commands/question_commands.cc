@@ -95,7 +95,7 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
   TRY(const std::vector<ExtraSet> extra, ExtraOf(options));
   if (options.question.sweeps) {
     TRY(asking.experiments, PlanSearches(options.experiment, extra, options.sweep));
-    if (!options.running.quiet) TellIdleNoise(context, asking.experiments);
+    if (!options.running.quiet) TellOfIdleSettings(context, asking.experiments);
     asking.experiment = asking.experiments.front().experiment;
     return asking;
   }

@@ -52,7 +52,7 @@ Result<ExitCode> RunSearches(CommandContext& context, const SearchOptions& optio
   std::vector<ExtraSet> all = SetsOf(options.size);
   all.insert(all.end(), extra.begin(), extra.end());
   TRY(const std::vector<SearchPlan> searches, PlanSearches(options.experiment, all, options.sweep));
-  if (!options.running.quiet) TellIdleNoise(context, searches);
+  if (!options.running.quiet) TellOfIdleSettings(context, searches);
   FailureTally without_obstacles;
   if (options.needs_passing || options.dry_run) {
     TRY(without_obstacles, CheckEmptyArenas(searches, options));

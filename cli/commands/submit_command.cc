@@ -73,7 +73,7 @@ Result<ExitCode> PrintCost(CommandContext& context, const std::vector<SearchPlan
 Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options) {
   TRY(const std::vector<SearchPlan> searches,
       PlanSearches(options.experiment, SetsOf(options.size), options.sweep));
-  if (!options.messages.quiet) TellIdleNoise(context, searches);
+  if (!options.messages.quiet) TellOfIdleSettings(context, searches);
   const Experiment& experiment = searches.front().experiment;
   TRY(const ExperimentText text, ReadExperimentText(options.experiment.experiment));
   TRY(slurm::SlurmSettings settings,

@@ -12,6 +12,7 @@
 
 #include "base/split.h"
 #include "controllers/run_start.h"
+#include "search/experiment/definition_table.h"
 #include "search/experiment/schema.h"
 #include "search/experiment/seed_list.h"
 #include "search/search_setup.h"
@@ -219,7 +220,7 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
   return plans;
 }
 
-void TellIdleNoise(CommandContext& context, const std::vector<SearchPlan>& searches) {
+void TellOfIdleSettings(CommandContext& context, const std::vector<SearchPlan>& searches) {
   std::map<std::string, bool> idle;  // by device
   for (const SearchPlan& plan : searches) {
     const Experiment& experiment = plan.experiment;
@@ -242,6 +243,10 @@ void TellIdleNoise(CommandContext& context, const std::vector<SearchPlan>& searc
       PrintMessage(context, fmt::format("noise.{0} changes nothing: no robot of {1} has the device {0}",
                                         device, searches.front().experiment.scenario));
   }
+  std::set<std::string> cut;
+  for (const SearchPlan& plan : searches)
+    std::ranges::copy(WindowsBeyondTheRun(plan.experiment), std::inserter(cut, cut.end()));
+  for (const std::string& window : cut) PrintMessage(context, window);
 }
 
 }  // namespace gauntlet

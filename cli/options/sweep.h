@@ -18,7 +18,8 @@ namespace gauntlet {
 Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
                                              const std::vector<ExtraSet>& extra, const SweepOptions& sweep);
 
-// Says which noise changes nothing, since no robot of the swarm has the device.
-void TellIdleNoise(CommandContext& context, const std::vector<SearchPlan>& searches);
+// Says which noise changes nothing, since no robot of the swarm has the device, and which windows of
+// requirements reach beyond a run.
+void TellOfIdleSettings(CommandContext& context, const std::vector<SearchPlan>& searches);
 
 }  // namespace gauntlet

@@ -6,18 +6,23 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/printable.h"
+#include "controllers/command/command_rows.h"
 #include "controllers/command/left_file.h"
 #include "controllers/command/metric_source.h"
 #include "controllers/command/placeholders.h"
+#include "controllers/command/requirements.h"
 #include "controllers/command/trajectory_file.h"
 #include "controllers/command/trajectory_measures.h"
 #include "controllers/generic/formula.h"
+#include "controllers/requirements/run_judge.h"
 
 namespace gauntlet::controllers::command {
 namespace {
@@ -141,6 +146,25 @@ Status ReadReplay(const Definition& definition, const std::string& folder, sim::
   return Ok{};
 }
 
+Result<std::optional<requirements::RunJudge>> JudgeFor(const Definition& definition,
+                                                       const sim::RunSpec& spec) {
+  if (spec.requirements.empty()) return std::optional<requirements::RunJudge>();
+  TRY(requirements::RunJudge judge,
+      requirements::RunJudge::Make(spec, RowsOf(definition).scenarios.front(), RequirementsOf(definition)));
+  if (judge.Measures() && definition.trajectory.empty())
+    return InvalidInput("requirements: a program without a trajectory is judged by its metrics alone");
+  return std::optional(std::move(judge));
+}
+
+// Without a trajectory nothing of the robots counts.
+void JudgeTrajectory(const requirements::RunJudge& judge, const sim::RunSpec& spec, sim::RunResult& result) {
+  const std::vector<std::vector<sim::RobotState>> nobody = {{sim::RobotState{}}};
+  const sim::Observer observer = ObserverOf(result.trajectory.empty() ? nobody : result.trajectory);
+  std::vector<sim::RobotIndex> robots(static_cast<std::size_t>(observer.robots()));
+  std::iota(robots.begin(), robots.end(), 0);
+  judge.Judge(observer, sim::Arena(spec.test_case), std::move(robots), result);
+}
+
 }  // namespace
 
 std::optional<std::string> RefusedBy(const Definition& definition, const std::string& folder) {
@@ -160,13 +184,14 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
   const Printed printed = PrintedIn(folder);
   std::map<std::string, double> measured;
   const auto of_trajectory = [](const Metric& metric) { return metric.from.starts_with(kTrajectorySource); };
-  const bool measures = std::ranges::any_of(definition.metrics, of_trajectory);
+  TRY(const std::optional<requirements::RunJudge> judge, JudgeFor(definition, spec));
+  const bool measures =
+      std::ranges::any_of(definition.metrics, of_trajectory) || (judge && judge->Measures());
   if (!definition.trajectory.empty()) {
     TRY(ReadTrajectory(folder + "/" + definition.trajectory, definition.trajectory,
                        spec.record_trajectory || measures, result));
   }
   if (measures) measured = TrajectoryMeasures(definition, spec, result.trajectory);
-  if (!spec.record_trajectory) result.trajectory.clear();
   std::optional<json> report;
   for (const Metric& metric : definition.metrics) {
     double value = 0.0;
@@ -188,6 +213,8 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
   TRY(const double failed, Computed(definition.failure, result));
   result.failure.total = failed != 0.0;
   result.annotations = PlacesOf(definition);
+  if (judge) JudgeTrajectory(*judge, spec, result);
+  if (!spec.record_trajectory) result.trajectory.clear();
   sim::SetHashes(result);
   if (spec.record_trajectory && !definition.trajectory.empty()) {
     TRY(ReadReplay(definition, folder, result));

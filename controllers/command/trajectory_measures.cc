@@ -38,11 +38,8 @@ const std::vector<std::string>& TrajectoryMeasureNames() {
   return names;
 }
 
-std::map<std::string, double> TrajectoryMeasures(const Definition& definition, const sim::RunSpec& spec,
-                                                 std::span<const std::vector<sim::RobotState>> trajectory) {
+sim::Observer ObserverOf(std::span<const std::vector<sim::RobotState>> trajectory) {
   const std::size_t robots = trajectory.front().size();
-  const sim::Arena arena(spec.test_case);
-  generic::Measures measures(arena, SettingsFor(definition, robots));
   sim::Observer observer(static_cast<int>(robots), static_cast<sim::Tick>(trajectory.size()));
   std::vector<sim::RobotState> states(robots);
   for (std::size_t tick = 0; tick < trajectory.size(); ++tick) {
@@ -55,6 +52,19 @@ std::map<std::string, double> TrajectoryMeasures(const Definition& definition, c
           std::sqrt(step.squaredNorm()) / (static_cast<double>(tick - before) * sim::kTickSeconds);
     }
     observer.Record(states);
+  }
+  return observer;
+}
+
+std::map<std::string, double> TrajectoryMeasures(const Definition& definition, const sim::RunSpec& spec,
+                                                 std::span<const std::vector<sim::RobotState>> trajectory) {
+  const std::size_t robots = trajectory.front().size();
+  const sim::Arena arena(spec.test_case);
+  generic::Measures measures(arena, SettingsFor(definition, robots));
+  const sim::Observer whole = ObserverOf(trajectory);
+  sim::Observer observer(static_cast<int>(robots), static_cast<sim::Tick>(trajectory.size()));
+  for (sim::Tick tick = 0; tick <= whole.last_tick(); ++tick) {
+    observer.Record(whole.At(tick));
     measures.Add(observer);
   }
   const std::vector<double> values = measures.Values(observer, {}, -1);

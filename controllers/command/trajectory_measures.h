@@ -18,6 +18,9 @@ inline constexpr std::string_view kTrajectorySource = "trajectory:";
 // "center_x", "dispersion_mean", ...: those that need positions alone.
 const std::vector<std::string>& TrajectoryMeasureNames();
 
+// The robots' speeds are their mean ones over a second. `trajectory` as below.
+sim::Observer ObserverOf(std::span<const std::vector<sim::RobotState>> trajectory);
+
 // By name. `trajectory`: [tick][robot], not empty. The goal is the definition's last point; what is near and
 // who is linked are as the defaults of `generic` say.
 std::map<std::string, double> TrajectoryMeasures(const Definition& definition, const sim::RunSpec& spec,

@@ -72,6 +72,10 @@ std::string EncodeExperiment(const Experiment& experiment) {
     encoder.String("definition");
     encoder.String(experiment.definition);
   }
+  if (!experiment.requirements.empty()) {
+    encoder.String("requirements");
+    encoder.String(experiment.requirements);
+  }
   return encoder.Take();
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/mean_and_range.h"
+#include "controllers/requirements/requirements.h"
 #include "search/failure_tally.h"
 #include "search/search_row.h"
 #include "sim/arena/genome.h"
@@ -66,6 +67,15 @@ Individual DecodeIndividual(CanonicalDecoder& decoder) {
 
 }  // namespace
 
+double RobustnessOf(const EvaluationOutcome& outcome) {
+  constexpr double kOfAFailure = -1.0;
+  double sum = 0.0;
+  for (const RunOutcome& run : outcome.runs)
+    sum +=
+        controllers::ReportedValue(run.metrics, controllers::requirements::kRobustness).value_or(kOfAFailure);
+  return sum / static_cast<double>(outcome.runs.size());
+}
+
 SideEffects SideEffectsOf(const sim::RunResult& result) {
   SideEffects effects{.contacts = static_cast<double>(result.contacts),
                       .seconds = static_cast<double>(result.ticks) / sim::kTicksPerSecond};
@@ -86,6 +96,10 @@ EvaluationOutcome OutcomeOfRuns(IndividualId individual, std::uint32_t evaluatio
 }
 
 std::optional<BrokenRule> CheckObjective(const Experiment& experiment) {
+  if (ObjectiveOf(experiment.search) == Objective::kRobustness && experiment.requirements.empty()) {
+    return BrokenRule{"search.objective",
+                      "search.objective = \"robustness\" is of what must hold: say it in [requirements]"};
+  }
   if (ObjectiveOf(experiment.search) != Objective::kSmallestFailure) return std::nullopt;
   const GenomeSpec& genome = experiment.genome;
   if (genome.genes > 0 && genome.length_min < genome.length_max) return std::nullopt;
@@ -140,11 +154,13 @@ EvaluationRequest PopulationSearch::Request(const Individual& individual, std::u
 }
 
 bool PopulationSearch::WantsMetrics() const {
+  if (objective_ == Objective::kRobustness) return true;
   return objective_ != Objective::kFitness && FailingNeedsMetrics(FailingOf(setup_.experiment));
 }
 
 double PopulationSearch::FitnessOf(const EvaluationOutcome& outcome, const sim::Genome& obstacles) const {
   if (objective_ == Objective::kFitness) return outcome.fitness;
+  if (objective_ == Objective::kRobustness) return RobustnessOf(outcome);
   double of_failure = 0.0;
   if (objective_ == Objective::kSmallestFailure) {
     const GenomeSpec& genome = setup_.experiment.genome;

@@ -21,6 +21,9 @@ namespace gauntlet {
 // Rules of search.objective, for the rows of searches that read it.
 std::optional<BrokenRule> CheckObjective(const Experiment& experiment);
 
+// The mean over the runs; one that gave no result failed, -1.
+double RobustnessOf(const EvaluationOutcome& outcome);
+
 // Different genomes among the individuals.
 std::uint64_t CountDistinctGenomes(const std::vector<Individual>& individuals);
 

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/number_text.h"
 #include "controllers/generic/definition.h"
+#include "controllers/registry.h"
+#include "controllers/requirements/requirements.h"
 #include "search/experiment/schema.h"
 
 namespace gauntlet {
@@ -39,6 +42,43 @@ Status Set(const Assignment& assignment, DefinitionReader& reader) {
   const Status set = begins ? reader.Begin(path) : reader.Set(path, *value);
   if (!set.ok()) return InvalidInput(fmt::format("{}: {}", assignment.where, set.error().message));
   return Ok{};
+}
+
+using controllers::requirements::kFailure;
+using controllers::requirements::kStep;
+using controllers::requirements::Requirements;
+
+constexpr std::string_view kBeginRequirements = "requirements.";
+
+struct Entry {
+  std::string name;
+  std::string formula;
+  std::string where;
+
+  int Rank() const { return name == kStep ? 0 : name == kFailure ? 2 : 1; }
+};
+
+Result<std::vector<Entry>> RequirementsIn(std::span<const Assignment> assignments) {
+  std::vector<Entry> entries;
+  for (const Assignment& assignment : assignments) {
+    if (!assignment.path.starts_with(kBeginRequirements)) continue;
+    const auto* formula = std::get_if<std::string>(&assignment.value);
+    if (formula == nullptr && assignment.text.empty())
+      return InvalidInput(fmt::format("{}: {} is {}, expected a formula as text", assignment.where,
+                                      assignment.path, KindOf(assignment.value)));
+    Entry entry{assignment.path.substr(kBeginRequirements.size()),
+                formula == nullptr ? assignment.text : *formula, assignment.where};
+    std::ranges::replace(entry.formula, '\n', ' ');
+    const auto before = std::ranges::find(entries, entry.name, &Entry::name);
+    if (before == entries.end()) {
+      entries.push_back(std::move(entry));
+    } else {
+      *before = std::move(entry);
+    }
+  }
+  std::erase_if(entries, [](const Entry& entry) { return entry.formula.empty(); });
+  std::ranges::stable_sort(entries, {}, &Entry::Rank);
+  return entries;
 }
 
 }  // namespace
@@ -89,6 +129,49 @@ std::vector<std::pair<std::string, std::string>> DefinitionSettings(const std::s
     settings.emplace_back(std::string(kBegin) + path,
                           number != nullptr ? NumberText(*number) : std::get<std::string>(value));
   }
+  return settings;
+}
+
+bool InRequirements(std::string_view path) {
+  return path.starts_with(kBeginRequirements);
+}
+
+Result<std::string> ReadRequirements(std::span<const Assignment> assignments, const std::string& file_name,
+                                     const std::vector<controllers::MetricInfo>& metrics) {
+  TRY(const std::vector<Entry> entries, RequirementsIn(assignments));
+  if (entries.empty()) return std::string();
+  Requirements requirements(metrics);
+  std::string text;
+  for (const Entry& entry : entries) {
+    if (const Status added = requirements.Add(entry.name, entry.formula); !added)
+      return InvalidInput(fmt::format("{}: {}", entry.where, added.error().message));
+    text += fmt::format("{} = {}\n", entry.name, entry.formula);
+  }
+  if (const Status whole = requirements.Check(); !whole)
+    return InvalidInput(fmt::format("{}: {}", file_name, whole.error().message));
+  return text;
+}
+
+std::vector<std::string> WindowsBeyondTheRun(const Experiment& experiment) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr) return {};
+  const auto requirements = Requirements::Parse(experiment.requirements, scenario->metrics);
+  if (!requirements) return {};
+  return requirements->BeyondTheRun(scenario->TimeLimit(experiment.scenario_parameters));
+}
+
+std::string WriteRequirements(const std::string& requirements) {
+  std::string text;
+  for (const auto& [name, formula] : controllers::requirements::EntriesOf(requirements))
+    text += fmt::format("{}{} = {}\n", text.empty() ? "\n[requirements]\n" : "", name, QuoteToml(formula));
+  return text;
+}
+
+std::vector<std::pair<std::string, std::string>> RequirementSettings(const std::string& requirements) {
+  std::vector<std::pair<std::string, std::string>> settings =
+      controllers::requirements::EntriesOf(requirements);
+  for (auto& [name, formula] : settings) name.insert(0, kBeginRequirements);
   return settings;
 }
 

@@ -1,5 +1,5 @@
-// The table of an experiment that defines a scenario: [generic] and the lists in it, [[generic.light]] and
-// on.
+// The tables of an experiment that have a language of their own: [generic] and the lists in it,
+// [[generic.light]] and on, which define a scenario, and [requirements].
 #pragma once
 
 #include <span>
@@ -10,6 +10,8 @@
 
 #include "base/key.h"
 #include "base/result.h"
+#include "controllers/behaviour.h"
+#include "search/experiment/experiment.h"
 #include "search/experiment/toml_text.h"
 
 namespace gauntlet {
@@ -29,5 +31,25 @@ std::string WriteDefinition(const std::string& definition);
 
 // The same as keys and values, as they are typed behind --set.
 std::vector<std::pair<std::string, std::string>> DefinitionSettings(const std::string& definition);
+
+// --- [requirements], what must hold of a run ---
+
+bool InRequirements(std::string_view path);
+
+// What these of the assignments require of a scenario with these metrics, as the text of
+// sim::RunSettings::requirements: `step` first, sentences in their order, `failure` last; of one name the
+// later wins, and one that is "" is taken back. "" when there are none. Error: begins with the assignment's
+// place, or with `file_name` when something is missing.
+Result<std::string> ReadRequirements(std::span<const Assignment> assignments, const std::string& file_name,
+                                     const std::vector<controllers::MetricInfo>& metrics);
+
+// Of a right experiment: which windows its runs are too short for, and what then holds; one sentence each.
+std::vector<std::string> WindowsBeyondTheRun(const Experiment& experiment);
+
+// The table that ReadRequirements reads that text from; "" of none.
+std::string WriteRequirements(const std::string& requirements);
+
+// The same as keys and values, as they are typed behind --set.
+std::vector<std::pair<std::string, std::string>> RequirementSettings(const std::string& requirements);
 
 }  // namespace gauntlet

@@ -48,6 +48,7 @@ class Reader {
     TRY(ResolveNames());
     TRY(AssignAll(/*base=*/false));
     TRY(Define());
+    TRY(experiment_.requirements, ReadRequirements(assignments_, file_name_, scenario_->metrics));
     for (const Key& key : keys_) {
       if (SaidByRectangle(experiment_, key.path)) key.set(experiment_, key.default_value);
     }
@@ -63,7 +64,9 @@ class Reader {
   Status AssignAll(bool base) {
     for (const Assignment& assignment : assignments_) {
       const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
-      if (base != is_base || InDefinition(assignment.path) || InCommand(assignment.path)) continue;
+      if (base != is_base || InDefinition(assignment.path) || InCommand(assignment.path) ||
+          InRequirements(assignment.path))
+        continue;
       TRY(Assign(assignment));
     }
     return Ok{};
@@ -338,6 +341,7 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
     text += LineOf(key.path.substr(table.empty() ? 0 : dot + 1), key, key.get(experiment));
   }
   text += WriteDefinition(experiment.definition);
+  text += WriteRequirements(experiment.requirements);
   return text;
 }
 

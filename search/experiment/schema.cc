@@ -63,7 +63,8 @@ Key PhysicsKey() {
 Key ObjectiveKey() {
   Key key(
       "search.objective", KeyType::kChoice,
-      "what is searched for: low fitness, short obstacles that make the swarm fail, or frequent failures");
+      "what is searched for: low fitness, short obstacles that make the swarm fail, frequent failures, or a "
+      "low robustness of what [requirements] says");
   key.choices.assign(kObjectiveNames.begin(), kObjectiveNames.end());
   key.get = [](const Experiment& e) -> KeyValue {
     return std::string(kObjectiveNames.at(static_cast<std::size_t>(ObjectiveOf(e.search))));

@@ -41,6 +41,7 @@ std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& ex
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
   std::ranges::move(DefinitionSettings(experiment.definition), std::back_inserter(settings));
+  std::ranges::move(RequirementSettings(experiment.requirements), std::back_inserter(settings));
   return settings;
 }
 

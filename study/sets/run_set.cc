@@ -88,6 +88,7 @@ std::map<std::string, std::string> ScenarioSettings(const Experiment& experiment
   for (const auto& [name, value] : experiment.scenario_parameters)
     settings.emplace("scenario_parameters." + name, fmt::format("{}", value));
   for (auto& setting : DefinitionSettings(experiment.definition)) settings.insert(std::move(setting));
+  for (auto& setting : RequirementSettings(experiment.requirements)) settings.insert(std::move(setting));
   return settings;
 }
 

@@ -54,9 +54,9 @@ const Prefixes kRunData = {"sim/geometry/", "sim/arena/", "sim/random/", "sim/ru
                            "sim/run_result.h"};
 const Prefixes kSwarmData = {"sim/observer.h", "sim/run_style.h", "sim/robot/foot_bot.h",
                              "sim/robot/disturbances.h"};
-const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h",
-                              "controllers/failure_descriptor.h", "controllers/run_start.h",
-                              "controllers/rows/"};
+const Prefixes kBehaviours = {
+    "controllers/registry.h",  "controllers/behaviour.h", "controllers/failure_descriptor.h",
+    "controllers/run_start.h", "controllers/rows/",       "controllers/requirements/"};
 
 // The house from the ground up: a room includes rooms that stand before it here, never one that comes later.
 const std::vector<Room>& House() {
