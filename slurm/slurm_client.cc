@@ -112,7 +112,7 @@ Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& comman
   options.deadline = deadline;
   options.inherits = Inherits;
   const std::string program = ProgramOf(command);
-  std::vector<std::string> line = {"/bin/bash", "-o", "pipefail", "-c", command, program};
+  std::vector<std::string> line = {"/bin/bash", "--norc", "-o", "pipefail", "-c", command, program};
   line.insert(line.end(), arguments.begin(), arguments.end());
   Result<CallOutput> output = CallProcess(line, input, options);
   const auto says = [&](const char* what) { return output->err.find(program + what) != std::string::npos; };

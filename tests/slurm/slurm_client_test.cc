@@ -50,6 +50,19 @@ TEST_F(CommandLineSlurmTest, AnEnclosingJobsVariablesStayOut) {
   EXPECT_THAT(Read("environment"), HasSubstr("SLURM_CONF=/etc/slurm.conf"));
 }
 
+// Bash does so where it takes its stdin for a network's.
+TEST_F(CommandLineSlurmTest, TheUsersBashrcIsNotRead) {
+  const std::string home = getenv("HOME");
+  std::ofstream(scratch_ / ".bashrc") << "echo rubbish\nexport PATH=/nowhere\n";
+  setenv("PATH", (scratch_.path() + ":" + path_).c_str(), 1);
+  setenv("HOME", scratch_.path().c_str(), 1);
+  unsetenv("SHLVL");
+  const Result<std::string> job = CommandLineSlurm().Submit("#!/bin/sh\nexit\n", {});
+  setenv("HOME", home.c_str(), 1);
+  ASSERT_TRUE(job.ok()) << job.error().message;
+  EXPECT_EQ(*job, "12");
+}
+
 TEST_F(CommandLineSlurmTest, AMachineWithoutSlurmIsToldSo) {
   setenv("PATH", (scratch_ / "nowhere").c_str(), 1);
   const Result<std::string> job = CommandLineSlurm().Submit("#!/bin/sh\nexit\n", {});
