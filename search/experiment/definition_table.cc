@@ -68,7 +68,8 @@ Result<std::vector<Entry>> RequirementsIn(std::span<const Assignment> assignment
                                       assignment.path, KindOf(assignment.value)));
     Entry entry{assignment.path.substr(kBeginRequirements.size()),
                 formula == nullptr ? assignment.text : *formula, assignment.where};
-    std::ranges::replace(entry.formula, '\n', ' ');
+    std::ranges::replace_if(
+        entry.formula, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     const auto before = std::ranges::find(entries, entry.name, &Entry::name);
     if (before == entries.end()) {
       entries.push_back(std::move(entry));

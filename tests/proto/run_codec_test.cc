@@ -38,14 +38,17 @@ TEST(RunCodecTest, ARunSpecSurvivesTheRoundTrip) {
   EXPECT_EQ(EncodeRunSpec(*decoded), bytes);
 }
 
-TEST(RunCodecTest, ADefinitionTravelsAndCostsNothingWhereThereIsNone) {
+TEST(RunCodecTest, ADefinitionAndRequirementsTravelAndCostNothingWhereThereAreNone) {
   sim::RunSpec spec = SampleSpec();
   const std::string without = EncodeRunSpec(spec);
   spec.definition = "fitness = \"1\"\nlight.1.x = 0.5\n";
+  spec.requirements = "stay = always speed > 0\n";
   const Result<sim::RunSpec> decoded = DecodeRunSpec(EncodeRunSpec(spec));
   ASSERT_TRUE(decoded.ok());
   EXPECT_EQ(decoded->definition, spec.definition);
-  EXPECT_EQ(EncodeRunSpec(spec).size(), without.size() + 2 + spec.definition.size());
+  EXPECT_EQ(decoded->requirements, spec.requirements);
+  const std::size_t bytes_of_fields = 2 + spec.definition.size() + 3 + spec.requirements.size();
+  EXPECT_EQ(EncodeRunSpec(spec).size(), without.size() + bytes_of_fields);
 }
 
 RC_GTEST_PROP(RunCodecProperty, CasesOfAllKindsOfGenesSurviveFilesAndSpecs, ()) {

@@ -80,7 +80,7 @@ const std::vector<Room>& House() {
        {"base"},
        kRunData + Prefixes{"sim/robot/", "sim/scenario.h", "sim/observer.h", "sim/run_style.h",
                            "sim/run_start.h", "sim/contacts.h"},
-       kTheOutsideWorld},
+       Without({"mutex"}, kTheOutsideWorld)},
       {"controllers/rows", {"base", "controllers"}, {}, Without({"nlohmann/"}, kTheOutsideWorld)},
       {"controllers/command",
        {"base", "controllers", "controllers/rows"},

@@ -62,6 +62,22 @@ TEST(SearchObjectiveTest, SmallestFailureIsTheLengthOfTheObstaclesWhereTheSwarmF
   }
 }
 
+TEST(SearchObjectiveTest, RobustnessIsTheMeanOfTheRuns) {
+  const Result<Experiment> experiment =
+      LoadExperiment("flocking",
+                     {"search.algorithm=random", "search.cases=1", "search.objective=robustness",
+                      "requirements.there=eventually distance_to(goal) < 1"},
+                     BuiltInCatalogue());
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  const auto search = MakeSearch(*experiment).value();
+  EXPECT_TRUE(search->WantsMetrics());
+  const EvaluationRequest request = search->Ask().front();
+  const RunOutcome run{.fitness = 0.25, .metrics = {{"robustness", 0.5}}};
+  const RunOutcome crashed{.verdict = sim::Verdict::kCrashed};
+  search->Tell(OutcomeOfRuns(request.individual, request.evaluation, {run, crashed}));
+  EXPECT_EQ(search->Population().front().fitness, -0.25) << "a run without a result is as bad as can be";
+}
+
 TEST(SearchObjectiveTest, EvolutionFollowsIt) {
   for (const char* algorithm : {"genetic", "steady-state"}) {
     const auto mean_length = [](const SearchAlgorithm& search) {
@@ -93,9 +109,13 @@ TEST(SearchObjectiveTest, IsRefusedWhereItMakesNoSense) {
             "--set search.objective=smallest-failure: search.objective = \"smallest-failure\" tells test "
             "cases apart by how long their obstacles are, and genome.genes = 8 of 1 to 1 m "
             "(genome.length_min, length_max) are all as long: use \"failure-probability\"");
+  EXPECT_EQ(
+      refused({"search.objective=robustness"}),
+      "--set search.objective=robustness: search.objective = \"robustness\" is of what must hold: say it in "
+      "[requirements]");
   EXPECT_EQ(refused({"search.objective=smallest"}),
             "--set search.objective=smallest: search.objective = \"smallest\" is unknown, allowed fitness, "
-            "smallest-failure, failure-probability");
+            "smallest-failure, failure-probability, robustness");
 }
 
 }  // namespace

@@ -51,6 +51,26 @@ TEST_F(OutcomeTest, WithoutItTheLastLineThatIsAnObject) {
   EXPECT_FALSE(Outcome()->failure.total);
 }
 
+TEST_F(OutcomeTest, IsJudgedByItsRequirements) {
+  Leave(kOutFile, "{\"items\": 4}\n");
+  Leave("t.csv", "time,robot,x,y\n0,a,0,0\n1,a,1,0\n2,a,2,0\n3,a,1,0\n");
+  sim::RunSpec spec;
+  const auto judged = [&](const std::string& requirements, const json& more) {
+    spec.requirements = requirements;
+    return OutcomeOf(DefinitionWith(more), spec, scratch_.path());
+  };
+  const json trajectory = {{"trajectory", "t.csv"}};
+  const auto far = judged("near = always greatest(x) < 1.5\n", trajectory);
+  ASSERT_TRUE(far.ok()) << far.error().message;
+  EXPECT_TRUE(far->failure.total);
+  EXPECT_EQ(far->metrics.back(), (std::pair<std::string, double>("violated_at.near", 2.0)));
+  EXPECT_TRUE(far->trajectory.empty());
+  EXPECT_FALSE(judged("near = eventually[2,3] greatest(x) < 1.5\n", trajectory)->failure.total);
+  EXPECT_FALSE(judged("some = items >= 4\n", json::object())->failure.total) << "by metrics alone";
+  EXPECT_EQ(judged("near = always greatest(x) < 1.5\n", json::object()).error().message,
+            "requirements: a program without a trajectory is judged by its metrics alone");
+}
+
 TEST_F(OutcomeTest, FlagsAreNumbersAndFormulasSeeWhatStandsBeforeThem) {
   Leave(kOutFile, R"({"items": 2.5, "done": true})");
   Leave(kStdoutFile, "took 12 s\n");

@@ -89,5 +89,66 @@ TEST(DefinitionTable, ErrorsNameThePlace) {
             "gather.toml:3:1: generic.fitness defines the scenario 'generic', and this is 'flocking'");
 }
 
+constexpr const char* kRequired =
+    "scenario = \"flocking\"\n"
+    "[requirements]\n"
+    "failure = \"not stay\"\n"
+    "near = \"\"\"count(distance_to(goal) < 1)\n  >= 8\"\"\"\n"
+    "stay = \"eventually always[0,30] near\"\n";
+
+TEST(RequirementTable, StandsInItsOrderWithTheFailureLast) {
+  const Result<Experiment> experiment = Read(kRequired);
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  EXPECT_EQ(experiment->requirements,
+            "near = count(distance_to(goal) < 1)   >= 8\nstay = eventually always[0,30] near\n"
+            "failure = not stay\n");
+  EXPECT_EQ(SpecOf(*experiment, {}, 1).requirements, experiment->requirements);
+  EXPECT_EQ(Read("scenario = \"flocking\"\n")->requirements, "");
+}
+
+TEST(RequirementTable, IsWrittenAsItIsRead) {
+  const Result<Experiment> experiment =
+      Read(kRequired, {"requirements.soon=eventually near", "requirements.step=tick"});
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  EXPECT_THAT(experiment->requirements, testing::StartsWith("step = tick\nnear"));
+  EXPECT_EQ(Read(WriteExperiment(*experiment, {}, BuiltInCatalogue()))->requirements,
+            experiment->requirements);
+  std::vector<std::string> sets = {"scenario=flocking"};
+  for (const auto& [key, value] : RequirementSettings(experiment->requirements))
+    sets.push_back(key + "=" + value);
+  EXPECT_EQ(Read("", sets)->requirements, experiment->requirements);
+}
+
+TEST(RequirementTable, IsChangedAndTakenBackBySets) {
+  EXPECT_THAT(Read(kRequired, {"requirements.near=count(x > 1) > 2"})->requirements,
+              testing::StartsWith("near = count(x > 1) > 2\nstay"));
+  EXPECT_THAT(Read(kRequired, {"requirements.failure="})->requirements, testing::EndsWith("near\n"));
+}
+
+TEST(RequirementTable, ErrorsNameThePlace) {
+  EXPECT_EQ(
+      TableError(kRequired, {"requirements.stay=always[3,1] near"}),
+      "--set requirements.stay=always[3,1] near: requirements.stay = \"always[3,1] near\": character 11: the "
+      "window [3,1] ends before it begins");
+  EXPECT_EQ(TableError("scenario = \"flocking\"\n[requirements]\na = 3\n"),
+            "gather.toml:3:1: requirements.a is a whole number, expected a formula as text");
+  EXPECT_THAT(TableError("scenario = \"flocking\"\n[requirements]\na = \"count(x > 1)\"\n"),
+              HasSubstr("gather.toml: [requirements] has no sentence that could be violated"));
+}
+
+TEST(RequirementTable, TellsOfWindowsThatAreTooLong) {
+  EXPECT_THAT(WindowsBeyondTheRun(*Read(kRequired)), testing::IsEmpty());
+  EXPECT_THAT(
+      WindowsBeyondTheRun(*Read(kRequired, {"requirements.soon=eventually[0,1e6] near"})),
+      testing::ElementsAre(HasSubstr("the window [0,1e+06] reaches beyond a run, which lasts 900 s")));
+}
+
+TEST(RequirementTable, MakesAnotherSearch) {
+  const auto identity = [](const std::vector<std::string>& sets) {
+    return SearchIdentity(SetupOf(*Read(kRequired, sets)));
+  };
+  EXPECT_NE(identity({}), identity({"requirements.near=count(x > 1) > 2"}));
+}
+
 }  // namespace
 }  // namespace gauntlet

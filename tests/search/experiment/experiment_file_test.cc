@@ -202,6 +202,7 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
       experiment.search.reevaluation == Reevaluation::kPopulation) {
     experiment.search.reevaluation = Reevaluation::kChildren;
   }
+  experiment.requirements = *rc::gen::element<std::string>("a = speed > 1\n", "step = tick\na = time > 0 \n");
   experiment.search.cells = *rc::gen::element<std::string>("", "strides:0:10:4");
   if (const auto runs = experiment.search.parameters.find("runs"); runs != experiment.search.parameters.end())
     runs->second = 1e8;  // an archive refuses what cannot fill a cell
