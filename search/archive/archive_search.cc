@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/number_text.h"
 #include "search/experiment/failure_cells.h"
+#include "search/experiment/objective.h"
 #include "sim/arena/genome.h"
 
 namespace gauntlet {
@@ -40,6 +41,15 @@ std::string PlanOf(const Experiment& experiment) {
 }
 
 std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
+  const Objective objective = ObjectiveOf(experiment.search);
+  if (objective != Objective::kFitness && objective != Objective::kRobustness) {
+    return BrokenRule{
+        "search.objective",
+        fmt::format("search.objective = \"{}\": search.algorithm = \"archive\" looks for frequent and "
+                    "small failures anyway; it can be steered by \"robustness\"",
+                    kObjectiveNames.at(static_cast<std::size_t>(objective)))};
+  }
+  if (std::optional<BrokenRule> broken = CheckObjective(experiment)) return broken;
   if (std::optional<BrokenRule> cells = CheckCells(experiment)) return cells;
   const int replicates = experiment.search.replicates;
   const int rounds = (ArchiveJudge::kFewestFailures + replicates - 1) / replicates;
@@ -66,6 +76,7 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
                              LinePolicy policy)
     : PopulationSearch(setup),
       only_deletion_(policy == LinePolicy::kDeletionOnly),
+      steered_(!only_deletion_ && ObjectiveOf(setup.experiment.search) == Objective::kRobustness),
       failing_(scenario.failing),
       archive_(CellsOf(setup.experiment)),
       places_(!only_deletion_ && scenario.failures.ArePlaces(archive_.grid().axes())),
@@ -180,8 +191,16 @@ void ArchiveSearch::Told(const EvaluationOutcome& outcome) {
   prior_.Learn(slot.finding.tally, told);
   Count(outcome, slot.finding);
   ++accounts_[static_cast<std::size_t>(slot.emitter)].runs;
+  if (steered_) Remember(slot.finding.individual);
   Continue(slot);
   waiting_.push_back(index);
+}
+
+void ArchiveSearch::Remember(const Individual& individual) {
+  std::erase_if(nearest_, [&](const Individual& one) { return one.id == individual.id; });
+  const auto place = std::ranges::upper_bound(nearest_, individual.fitness, {}, &Individual::fitness);
+  nearest_.insert(place, individual);
+  if (nearest_.size() > kRemembered) nearest_.pop_back();
 }
 
 void ArchiveSearch::Continue(Slot& slot) {
@@ -277,6 +296,10 @@ void ArchiveSearch::BeginAnew(Slot& slot) {
 }
 
 bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
+  if (steered_ && archive_.shelves().empty() && !nearest_.empty() && random.Uniform() < kSteeredShare) {
+    const std::uint32_t index = random.Below(static_cast<std::uint32_t>(nearest_.size()));
+    if (Begin(slot, proposer_.Changed(nearest_[index], random))) return true;
+  }
   const double draw = random.Uniform();
   const Experiment& e = setup_.experiment;
   const double across = proposer_.HasWay() ? Get(e, kAcrossShare) : 0.0;
@@ -380,6 +403,9 @@ void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
   for (const Slot& slot : slots_) SaveSlot(slot, encoder);
   for (const std::size_t slot : waiting_) encoder.Uint(slot);
   prior_.Save(encoder);
+  if (!steered_) return;
+  encoder.Uint(nearest_.size());
+  SaveIndividuals(nearest_, encoder);
 }
 
 Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
@@ -410,6 +436,10 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
   }
   if (!decoder.AtEnd()) prior_.Restore(decoder);  // states of earlier versions end here
+  if (steered_) {
+    const std::uint64_t remembered = decoder.Uint();
+    TRY(nearest_, RestoreIndividuals(remembered, next_id_, decoder));
+  }
   if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
     return Damaged("a slot does not wait");
   }
@@ -421,7 +451,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
 SearchRow ArchiveRow() {
   return {.info = {.name = "archive",
                    .description = "many different failures, each with as few obstacles as possible",
-                   .keys = {"search.replicates", "search.cells", "genome."},
+                   .keys = {"search.replicates", "search.cells", "search.objective", "genome."},
                    .parameters = kArchiveParameters,
                    .length = "search.runs",
                    .check = CheckArchive},

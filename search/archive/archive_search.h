@@ -45,6 +45,9 @@ enum class LinePolicy : std::uint8_t { kAll, kDeletionOnly };
 // admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
 // left is admitted. The archive only collects what comes of it.
 //
+// Steered by robustness it remembers the layouts whose runs came nearest to failing; as long as nothing was
+// admitted, every other line that begins is one of them, a little changed.
+//
 // Population() is the smallest of each cell, in the order of the cells.
 class ArchiveSearch : public PopulationSearch {
  public:
@@ -101,6 +104,8 @@ class ArchiveSearch : public PopulationSearch {
   bool BeginDrawn(Slot& slot, sim::RandomStream& random);
   // Of the elite that is expected to fail least, if that is less than `below`.
   bool BeginRecheck(Slot& slot, double below);
+  // Among those that came nearest to failing.
+  void Remember(const Individual& individual);
   void PlanNearest(Slot& slot);
   void PlanWithout(Slot& slot, const Finding& found);
   void Rechecked(Slot& slot);
@@ -110,7 +115,11 @@ class ArchiveSearch : public PopulationSearch {
   static void SaveSlot(const Slot& slot, CanonicalEncoder& encoder);
   Status RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const;
 
+  static constexpr std::size_t kRemembered = 8;
+  static constexpr double kSteeredShare = 0.5;
+
   const bool only_deletion_;
+  const bool steered_;
   const std::string_view failing_;
   FailureArchive archive_;
   const bool places_;  // the axes are the coordinates of a place
@@ -121,6 +130,7 @@ class ArchiveSearch : public PopulationSearch {
   std::deque<std::size_t> waiting_;  // slots whose run is asked for or about to be, in order
   std::size_t asked_ = 0;            // of waiting_, from its front
   IndividualId next_id_ = 1;
+  std::vector<Individual> nearest_;  // to failing, of a search that is steered; the nearest first
   std::array<EmitterAccount, kEmitters> accounts_;
 };
 

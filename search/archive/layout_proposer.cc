@@ -169,6 +169,15 @@ std::optional<Proposal> LayoutProposer::Jittered(sim::RandomStream& random) cons
   return std::nullopt;
 }
 
+std::optional<Proposal> LayoutProposer::Changed(const Individual& individual,
+                                                sim::RandomStream& random) const {
+  for (int i = 0; i < kTries; ++i) {
+    if (auto changed = gauntlet::Jittered(individual.test_case.obstacles, generator_, random))
+      return Proposal{Emitter::kJittered, *std::move(changed), individual.id};
+  }
+  return std::nullopt;
+}
+
 sim::Vec2 LayoutProposer::DrawPlace(sim::RandomStream& random) const {
   return way_.start + (way_.goal - way_.start) * random.Uniform();
 }

@@ -47,6 +47,9 @@ class LayoutProposer {
   // An elite without one of its obstacles, changed a little; there has to be an elite.
   std::optional<Proposal> Jittered(sim::RandomStream& random) const;
 
+  // A layout whose obstacles are all changed a little.
+  std::optional<Proposal> Changed(const Individual& individual, sim::RandomStream& random) const;
+
   // A few obstacles of a layout that failed there, the most suspect ones first.
   std::vector<sim::Genome> PartsNear(const sim::Genome& obstacles, const Descriptor& failure) const;
   // All but one obstacle, first without the one that is least suspect.

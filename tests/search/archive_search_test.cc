@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 
 #include "search/experiment/experiment_file.h"
+#include "search/experiment/objective.h"
 #include "search/search_table.h"
 #include "tests/search/toy_search.h"
 
@@ -258,6 +260,67 @@ TEST(ArchiveSearchTest, RandomDeletionOnlyDrawsCasesAndTakesObstaclesAway) {
   for (const char* emitter : {"nearest", "mirrored", "across", "jittered", "recheck"}) {
     EXPECT_EQ(StatisticOf(*search, std::string(emitter) + "_runs"), 0.0) << emitter;
   }
+}
+
+// A swarm that breaks at an obstacle within 6 cm of one point, and says how near it came to that.
+EvaluationOutcome NearOutcome(const EvaluationRequest& request) {
+  double nearest = 10.0;
+  for (const sim::ObstacleGene& gene : request.test_case.obstacles)
+    nearest = std::min(nearest, std::hypot(gene.x - 1.53, gene.y + 1.27));
+  RunOutcome run;
+  run.total_failure = nearest < 0.06;
+  run.metrics = {{"split_x", 1.5}, {"split_y", -1.3}, {"robustness", (nearest - 0.06) / 10.0}};
+  return OutcomeOfRuns(request.individual, request.evaluation, {run});
+}
+
+// Runs until the first failure, or the end.
+std::size_t RunsToAFailure(ArchiveSearch& search) {
+  std::size_t runs = 0;
+  while (!search.Progress().finished) {
+    for (const EvaluationRequest& request : search.Ask()) {
+      const EvaluationOutcome outcome = NearOutcome(request);
+      ++runs;
+      if (outcome.runs.front().total_failure) return runs;
+      search.Tell(outcome);
+    }
+  }
+  return runs;
+}
+
+SearchSetup SteeredSetup(std::uint64_t seed, Objective objective) {
+  SearchSetup setup = ArchiveSetup(2000);
+  setup.experiment.seed = seed;
+  setup.experiment.search.parameters[std::string(kObjectiveParameter)] = static_cast<double>(objective);
+  return setup;
+}
+
+TEST(ArchiveSearchTest, RobustnessSteersItBeforeAnythingFails) {
+  int sooner = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::size_t plain = RunsToAFailure(*MakeArchive(SteeredSetup(seed, Objective::kFitness)));
+    const std::size_t steered = RunsToAFailure(*MakeArchive(SteeredSetup(seed, Objective::kRobustness)));
+    if (steered < plain) ++sooner;
+  }
+  EXPECT_GE(sooner, 16) << sooner;
+}
+
+TEST(ArchiveSearchTest, WhatItRemembersIsPartOfItsState) {
+  const auto whole = MakeArchive(SteeredSetup(3, Objective::kRobustness));
+  const auto first = MakeArchive(SteeredSetup(3, Objective::kRobustness));
+  const auto tell = [](ArchiveSearch& search, std::uint64_t evaluations) {
+    std::vector<EvaluationRequest> asked;
+    std::size_t told = 0;
+    while (search.Progress().evaluations_done < evaluations) {
+      std::ranges::move(search.Ask(), std::back_inserter(asked));
+      search.Tell(NearOutcome(asked.at(told++)));
+    }
+  };
+  tell(*whole, 600);
+  tell(*first, 300);
+  const auto second = MakeArchive(SteeredSetup(3, Objective::kRobustness));
+  ASSERT_TRUE(RestoreState(*second, StateOf(*first)).ok());
+  tell(*second, 600);
+  EXPECT_EQ(StateOf(*second), StateOf(*whole));
 }
 
 TEST(ArchiveSearchTest, AScenarioWithoutAxesIsRefused) {

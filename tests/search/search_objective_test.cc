@@ -113,6 +113,8 @@ TEST(SearchObjectiveTest, IsRefusedWhereItMakesNoSense) {
       refused({"search.objective=robustness"}),
       "--set search.objective=robustness: search.objective = \"robustness\" is of what must hold: say it in "
       "[requirements]");
+  EXPECT_THAT(refused({"search.algorithm=archive", "search.objective=smallest-failure"}),
+              HasSubstr("looks for frequent and small failures anyway; it can be steered by \"robustness\""));
   EXPECT_EQ(refused({"search.objective=smallest"}),
             "--set search.objective=smallest: search.objective = \"smallest\" is unknown, allowed fitness, "
             "smallest-failure, failure-probability, robustness");
