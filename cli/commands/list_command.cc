@@ -315,7 +315,7 @@ void AddList(CommandParser& parser) {
   for (const Listing& section : kSections) names.emplace_back(section.name);
   auto* section = command
                       .add_option("SECTION", options.section,
-                                  "the section to print: experiments, scenarios, controllers, searches or "
+                                  "the section to print: experiments, scenarios, controllers, searches, "
                                   "disturbances or measures (default: all)")
                       ->check(CLI::IsMember(names));
   AddValue(command, "--plugin", "LIB.so", options.plugins, "list what this library of yours brings instead");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 namespace gauntlet::controllers::requirements {
@@ -31,15 +30,19 @@ bool DecidesOne(const Truth& a, const Truth& b) {
 template <typename Better>
 std::vector<std::size_t> BestIn(std::span<const Truth> signal, const SampleWindow& window, Better better) {
   std::vector<std::size_t> best(signal.size(), signal.size());
-  std::deque<std::size_t> candidates;  // from the newest, which comes first, to the best
+  // From the best, at `oldest`, to the newest.
+  std::vector<std::size_t> candidates;
+  candidates.reserve(signal.size());
+  std::size_t oldest = 0;
   for (std::size_t sample = signal.size(); sample-- > 0;) {
     if (window.first < signal.size() - sample) {
       const std::size_t next = sample + window.first;
-      while (!candidates.empty() && !better(signal[candidates.front()], signal[next])) candidates.pop_front();
-      candidates.push_front(next);
+      while (candidates.size() > oldest && !better(signal[candidates.back()], signal[next]))
+        candidates.pop_back();
+      candidates.push_back(next);
     }
-    while (!candidates.empty() && candidates.back() - sample > window.last) candidates.pop_back();
-    if (!candidates.empty()) best[sample] = candidates.back();
+    while (candidates.size() > oldest && candidates[oldest] - sample > window.last) ++oldest;
+    if (candidates.size() > oldest) best[sample] = candidates[oldest];
   }
   return best;
 }

@@ -40,16 +40,7 @@ std::string PlanOf(const Experiment& experiment) {
   return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
 }
 
-std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
-  const Objective objective = ObjectiveOf(experiment.search);
-  if (objective != Objective::kFitness && objective != Objective::kRobustness) {
-    return BrokenRule{
-        "search.objective",
-        fmt::format("search.objective = \"{}\": search.algorithm = \"archive\" looks for frequent and "
-                    "small failures anyway; it can be steered by \"robustness\"",
-                    kObjectiveNames.at(static_cast<std::size_t>(objective)))};
-  }
-  if (std::optional<BrokenRule> broken = CheckObjective(experiment)) return broken;
+std::optional<BrokenRule> CheckBudget(const Experiment& experiment) {
   if (std::optional<BrokenRule> cells = CheckCells(experiment)) return cells;
   const int replicates = experiment.search.replicates;
   const int rounds = (ArchiveJudge::kFewestFailures + replicates - 1) / replicates;
@@ -61,6 +52,19 @@ std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
                   "search.slots = {} cases have a run before one of them has its next; use {} runs or more, "
                   "or fewer slots",
                   Get(experiment, kRuns), ArchiveJudge::kFewestFailures, Get(experiment, kSlots), needed)};
+}
+
+std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
+  const Objective objective = ObjectiveOf(experiment.search);
+  if (objective != Objective::kFitness && objective != Objective::kRobustness) {
+    return BrokenRule{
+        "search.objective",
+        fmt::format("search.objective = \"{}\": search.algorithm = \"archive\" looks for frequent and "
+                    "small failures anyway; it can be steered by \"robustness\"",
+                    kObjectiveNames.at(static_cast<std::size_t>(objective)))};
+  }
+  if (std::optional<BrokenRule> broken = CheckObjective(experiment)) return broken;
+  return CheckBudget(experiment);
 }
 
 // Nothing: the number is no emitter's.
@@ -469,7 +473,7 @@ SearchRow RandomDeletionRow() {
                .keys = {"search.replicates", "search.cells", "search.runs", "search.slots", "search.keep_out",
                         "genome."},
                .length = "search.runs",
-               .check = CheckArchive},
+               .check = CheckBudget},
       .number = 9,
       .title = "random search with deletion",
       .individuals = Individuals::kElites,

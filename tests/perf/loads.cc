@@ -28,8 +28,10 @@ sim::TestCase ShippedCase(const std::string& name) {
 
 // The scenario and the controller of that name.
 Load LoadOf(std::string name, std::string what, std::uint64_t runs, const std::string& behaviour,
-            sim::TestCase test_case, const sim::Parameters& given = {}) {
+            sim::TestCase test_case, const sim::Parameters& given = {},
+            const std::string& requirements = "") {
   sim::RunSpec spec;
+  spec.requirements = requirements;
   spec.test_case = std::move(test_case);
   spec.scenario = behaviour;
   spec.scenario_parameters =
@@ -42,7 +44,9 @@ Load LoadOf(std::string name, std::string what, std::uint64_t runs, const std::s
     spec.seed = seed;
     auto scenario = controllers::CreateScenario(spec);
     GAUNTLET_CHECK(scenario.ok(), scenario.ok() ? "" : scenario.error().message);
-    return sim::Simulate(**scenario, seed, false, options);
+    sim::SimulationOptions judged = options;
+    judged.judge = controllers::JudgeOf(spec).value();
+    return sim::Simulate(**scenario, seed, false, judged);
   };
   return {std::move(name), std::move(what), runs, run};
 }
@@ -93,6 +97,13 @@ std::vector<Load> ShippedLoads() {
     }
   }
   return loads;
+}
+
+Load RequiredLoad() {
+  return LoadOf("flocking-required", "flocking, random case, three nested windows over a count", 6,
+                "flocking", ShippedCase("flocking-random"), {},
+                "near = count(distance_to(center) < 3)\n"
+                "stay = always[0,300] eventually[0,60] always[0,30] near >= 6\n");
 }
 
 std::vector<Load> ArgosLoads() {

@@ -23,6 +23,8 @@ struct Load {
 
 // What the three shipped experiments simulate: per experiment an evolved and a random case.
 std::vector<Load> ShippedLoads();
+// The second of them under a requirement.
+Load RequiredLoad();
 // Light-flocking of 11 robots in a pocket, which ends in a jam, and of 6 robots; 20 random walkers with the
 // sensors that cost most. With GAUNTLET_ARGOS_CASES in the environment, the folder of the thesis author's
 // layouts, light-flocking stands in his layout `environment1` (or `env1`) instead, as it stood in ARGoS.

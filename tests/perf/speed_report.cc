@@ -85,6 +85,13 @@ void ReportRuns(const std::vector<Load>& loads) {
   fmt::print("ns/r-t: per robot and tick\n\n");
 }
 
+void ReportRequirements(const Load& required, const Load& plain) {
+  std::vector<double> ratios;
+  for (int repeat = 0; repeat < 3 * kRepeats; ++repeat)
+    ratios.push_back(Measure(required).seconds / Measure(plain).seconds);
+  fmt::print("{}: {:.3f} times the cost without\n\n", required.what, Median(ratios));
+}
+
 void ReportStages(const std::vector<Load>& loads) {
   std::vector<StageClock> clocks(loads.size());
   fmt::print("{:<38}", "share of the time, %");
@@ -144,6 +151,7 @@ int PrintRows() {
 int Report(const std::string& svg_file) {
   const std::vector<Load> loads = RunLoads();
   ReportRuns(loads);
+  ReportRequirements(RequiredLoad(), loads[1]);
   ReportStages(loads);
   ReportEngines(CrowdLoads());
   ReportScaling(svg_file);

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/system/regular_file.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {
@@ -123,6 +125,16 @@ TEST(RequirementTable, IsChangedAndTakenBackBySets) {
   EXPECT_THAT(Read(kRequired, {"requirements.near=count(x > 1) > 2"})->requirements,
               testing::StartsWith("near = count(x > 1) > 2\nstay"));
   EXPECT_THAT(Read(kRequired, {"requirements.failure="})->requirements, testing::EndsWith("near\n"));
+}
+
+TEST(RequirementTable, TheTablesOfThePageCanBeRead) {
+  const std::string page = ReadRegularFile(GAUNTLET_SOURCE_DIR "/docs/requirements.md").value();
+  int tables = 0;
+  for (std::size_t at = 0; (at = page.find("```toml\n", at)) != std::string::npos; ++tables) {
+    at += 8;
+    EXPECT_EQ(TableError("scenario = \"flocking\"\n" + page.substr(at, page.find("```", at) - at)), "");
+  }
+  EXPECT_EQ(tables, 2);
 }
 
 TEST(RequirementTable, ErrorsNameThePlace) {

@@ -169,11 +169,12 @@ TEST_F(ShippedExperimentsTest, UnknownNameSuggestsTheNearest) {
   EXPECT_EQ(experiment.error().kind, ErrorKind::kNotFound);
   EXPECT_THAT(experiment.error().message,
               StartsWith("unknown experiment 'floking'; did you mean 'flocking'?"));
-  EXPECT_EQ(LoadExperiment("quux", {}, BuiltInCatalogue()).error().message,
-            "unknown experiment 'quux'; shipped: flocking, flocking-fitted, flocking-fitted-improved, "
-            "flocking-improved, foraging, foraging-fitted, foraging-fitted-improved, gathering, "
-            "task-partitioning, task-partitioning-convergence, task-partitioning-fitted, "
-            "task-partitioning-fitted-improved (a file is named by a path ending in .toml)");
+  EXPECT_EQ(
+      LoadExperiment("quux", {}, BuiltInCatalogue()).error().message,
+      "unknown experiment 'quux'; shipped: flocking, flocking-fitted, flocking-fitted-improved, "
+      "flocking-improved, flocking-required, foraging, foraging-fitted, foraging-fitted-improved, gathering, "
+      "task-partitioning, task-partitioning-convergence, task-partitioning-fitted, "
+      "task-partitioning-fitted-improved (a file is named by a path ending in .toml)");
   setenv("GAUNTLET_EXPERIMENTS_DIR", "no-such-folder", 1);
   EXPECT_THAT(LoadExperiment("flocking", {}, BuiltInCatalogue()).error().message,
               StartsWith("there is no experiment 'flocking', because none can be read in no-such-folder"));
