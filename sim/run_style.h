@@ -30,7 +30,8 @@ struct AnnotationStyle {
   bool operator==(const AnnotationStyle&) const = default;
 };
 
-// Annotations "trapped" (a robot, from its tick on) and "states" (its time-line) mean the same everywhere.
+// Annotations "trapped" (a robot, from its tick on), "states" (its time-line) and "violated" (a requirement,
+// by which comparison, and when) mean the same everywhere.
 struct RunStyle {
   std::string member = "robot";  // one of those under test, singular
   std::string lost = "lost";     // what RobotSummary::lost says of it

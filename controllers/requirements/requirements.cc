@@ -189,7 +189,7 @@ Judgement Requirements::Judge(Trace trace, std::span<const std::pair<std::string
     if (truth.holds) continue;
     std::string label = required[i]->name;
     if (truth.reason >= 0) label += ": " + nodes_[static_cast<std::size_t>(truth.reason)].text;
-    judgement.annotations.push_back({.kind = kViolated, .label = label, .tick = tick});
+    judgement.annotations.push_back({.kind = "violated", .label = label, .tick = tick});
   }
   return judgement;
 }

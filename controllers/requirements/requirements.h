@@ -22,8 +22,6 @@ inline constexpr std::string_view kStep = "step";
 // Metrics of a run; of a requirement its name stands behind a dot.
 inline constexpr std::string_view kRobustness = "robustness";
 inline constexpr std::string_view kViolatedAt = "violated_at";
-// The kind of an annotation: a requirement's name and the comparison that its robustness is of, and when.
-inline constexpr const char* kViolated = "violated";
 
 // A run's answer.
 struct Judgement {

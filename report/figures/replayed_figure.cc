@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "controllers/registry.h"
-#include "controllers/requirements/requirements.h"
 #include "proto/run_text.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -18,22 +17,6 @@ std::string MetricText(const controllers::MetricInfo* info, double value) {
   return fmt::format("{:.6g} {}", value, info->unit);
 }
 
-namespace {
-
-// Behind the times of what was violated, by which comparison; and which requirement was the first.
-void AddViolations(analysis::RunFigure& figure) {
-  const sim::Annotation* first = nullptr;
-  for (const sim::Annotation& violated : figure.result.annotations) {
-    if (violated.kind != controllers::requirements::kViolated) continue;
-    if (first == nullptr || violated.tick < first->tick) first = &violated;
-  }
-  if (first != nullptr)
-    figure.metrics.emplace_back(
-        "violated first", fmt::format("{}, at {:.6g} s", first->label, first->tick * sim::kTickSeconds));
-}
-
-}  // namespace
-
 analysis::RunFigure FigureOf(const std::string& experiment_name, const ReplayReport& report) {
   analysis::RunFigure figure;
   figure.experiment = experiment_name;
@@ -46,7 +29,6 @@ analysis::RunFigure FigureOf(const std::string& experiment_name, const ReplayRep
     const auto* info = controllers::FindMetric(scenario, name);
     figure.metrics.emplace_back(name, MetricText(info, value));
   }
-  AddViolations(figure);
   return figure;
 }
 

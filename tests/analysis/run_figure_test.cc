@@ -225,6 +225,14 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   EXPECT_EQ(DescribeOutcome(figure), "1 of 3 birds lost");
   figure.result.failure = {true, 12, "20-30 degrees apart"};
   EXPECT_EQ(DescribeOutcome(figure), "total failure: 1 of 3 birds lost");
+  RunFigure required = figure;
+  required.result.annotations.push_back({.kind = "violated", .label = "b: x < 1", .tick = 200});
+  required.result.annotations.push_back({.kind = "violated", .label = "a: near >= 6", .tick = 155});
+  EXPECT_EQ(DescribeOutcome(required), "total failure: a: near >= 6, at 15.5 s; 1 of 3 birds lost");
+  required.style.lost = "";
+  EXPECT_EQ(DescribeOutcome(required), "total failure: a: near >= 6, at 15.5 s");
+  required.result.failure.total = false;
+  EXPECT_EQ(DescribeOutcome(required), "no failure");
   RunFigure nobody_lost = figure;
   for (sim::RobotSummary& robot : nobody_lost.result.robots) robot.lost = false;
   nobody_lost.result.failure.label = "no path, no food";

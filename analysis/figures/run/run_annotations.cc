@@ -34,6 +34,15 @@ const sim::Annotation* LatestMarkedAs(const RunFigure& figure, sim::Mark mark) {
   return latest == marked.end() ? nullptr : *latest;
 }
 
+const sim::Annotation* FirstViolation(const sim::RunResult& result) {
+  const sim::Annotation* first = nullptr;
+  for (const sim::Annotation& annotation : result.annotations) {
+    if (annotation.kind == "violated" && (first == nullptr || annotation.tick < first->tick))
+      first = &annotation;
+  }
+  return first;
+}
+
 RobotStates StatesOf(const sim::RunResult& result) {
   RobotStates states;
   const double end = result.ticks * sim::kTickSeconds;

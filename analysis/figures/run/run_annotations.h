@@ -32,6 +32,9 @@ struct RobotStates {
   bool empty() const { return spells.empty(); }
 };
 
+// Of the requirement that was violated first; nullptr: none was.
+const sim::Annotation* FirstViolation(const sim::RunResult& result);
+
 // From the annotations "states": one per robot, its label the names separated by commas, its points
 // (second, state) wherever the state changed. Empty when the run has none; what does not make sense in them
 // is left out.

@@ -223,6 +223,10 @@ std::string DescribeOutcome(const RunFigure& figure) {
     const std::string_view what = result.verdict == sim::Verdict::kRefused ? "refused" : "the run failed";
     return fmt::format("{}: {}", what, result.message);
   }
+  std::string violated;
+  if (const sim::Annotation* first = result.failure.total ? FirstViolation(result) : nullptr)
+    violated = fmt::format("{}, at {:.6g} s", Shortened(first->label, 60), first->tick * sim::kTickSeconds);
+  if (style.lost.empty() && !violated.empty()) return "total failure: " + violated;
   if (style.lost.empty()) return result.failure.total ? "total failure" : "no failure";
   const int guide = GuideOf(figure);
   std::size_t members = 0;
@@ -236,6 +240,7 @@ std::string DescribeOutcome(const RunFigure& figure) {
   const std::string who =
       lost == 0 ? fmt::format("no {} {}", style.member, style.lost)
                 : fmt::format("{} of {} {} {}", lost, members, Plural(members, style.member), style.lost);
+  if (!violated.empty()) return fmt::format("total failure: {}; {}", violated, who);
   const bool labelled = result.failure.total && !result.failure.label.empty();
   if (labelled && lost == 0) return fmt::format("{}{}", prefix, result.failure.label);
   if (result.failure.total && !style.lost_is_failure)
