@@ -17,13 +17,38 @@ namespace {
 
 constexpr double kLargestNumber = 1e9;
 
-constexpr std::array<std::pair<std::string_view, Operation>, 6> kComparisons = {
-    {{"<=", Operation::kLessEqual},
-     {">=", Operation::kGreaterEqual},
-     {"==", Operation::kEqual},
-     {"!=", Operation::kUnequal},
-     {"<", Operation::kLess},
-     {">", Operation::kGreater}}};
+// Operations between two operands. Of one binding the left one comes first; but of `implies` the right one.
+struct Infix {
+  std::string_view word;
+  Operation operation = Operation::kOr;
+  int binding = 0;
+};
+constexpr int kImplies = 1;
+constexpr int kUntil = 4;
+constexpr int kPrefix = 5;  // not, always, eventually
+constexpr int kComparison = 6;
+constexpr int kTightest = 9;
+constexpr std::array<Infix, 16> kInfixes = {{{"implies", Operation::kOr, kImplies},
+                                             {"or", Operation::kOr, 2},
+                                             {"||", Operation::kOr, 2},
+                                             {"and", Operation::kAnd, 3},
+                                             {"&&", Operation::kAnd, 3},
+                                             {"until", Operation::kUntil, kUntil},
+                                             {"<=", Operation::kLessEqual, kComparison},
+                                             {">=", Operation::kGreaterEqual, kComparison},
+                                             {"==", Operation::kEqual, kComparison},
+                                             {"!=", Operation::kUnequal, kComparison},
+                                             {"<", Operation::kLess, kComparison},
+                                             {">", Operation::kGreater, kComparison},
+                                             {"+", Operation::kAdd, 7},
+                                             {"-", Operation::kSubtract, 7},
+                                             {"*", Operation::kMultiply, 8},
+                                             {"/", Operation::kMultiply, 8}}};
+constexpr std::array<std::pair<std::string_view, Operation>, 4> kPrefixes = {
+    {{"not", Operation::kNot},
+     {"!", Operation::kNot},
+     {"always", Operation::kAlways},
+     {"eventually", Operation::kEventually}}};
 constexpr std::array<std::pair<std::string_view, Operation>, 3> kFunctions = {
     {{"min", Operation::kSmaller}, {"max", Operation::kLarger}, {"abs", Operation::kAbsolute}}};
 constexpr std::array<std::pair<std::string_view, Operation>, 4> kOfRobots = {
@@ -66,6 +91,11 @@ std::size_t TokenLength(std::string_view text) {
   return std::ranges::count(kPairs, text.substr(0, 2)) > 0 ? 2 : 1;
 }
 
+const Infix* FindInfix(std::string_view word) {
+  const auto* const found = std::ranges::find(kInfixes, word, &Infix::word);
+  return found == kInfixes.end() ? nullptr : found;
+}
+
 // Counts how deep it is.
 class Deeper {
  public:
@@ -88,7 +118,7 @@ Result<std::size_t> FormulaReader::Read(std::string_view text) {
   rest_ = 0;
   TRY(Next());
   if (token_.empty()) return InvalidInput("the formula is empty");
-  TRY(const std::size_t node, Implication());
+  TRY(const std::size_t node, Read(kImplies));
   if (!token_.empty()) return Wrong(fmt::format("'{}' cannot stand here", token_));
   return node;
 }
@@ -126,80 +156,55 @@ std::size_t FormulaReader::Add(Node node) {
   return nodes_.size() - 1;
 }
 
-Status FormulaReader::NeedTruth(std::size_t node, std::string_view of) const {
-  if (nodes_[node].truth) return Ok{};
+Status FormulaReader::Need(bool truth, std::size_t node, std::string_view of) const {
+  if (nodes_[node].truth == truth) return Ok{};
+  if (!truth) return Wrong(fmt::format("'{}' is of a number, not of something that holds or does not", of));
   return Wrong(fmt::format("'{}' is of something that holds or does not, not of a number: compare it", of));
 }
 
-Status FormulaReader::NeedNumber(std::size_t node, std::string_view of) const {
-  if (!nodes_[node].truth) return Ok{};
-  return Wrong(fmt::format("'{}' is of a number, not of something that holds or does not", of));
-}
-
-Result<Node> FormulaReader::Combined(Operation operation, std::size_t left, std::size_t right) const {
-  return Node{.operation = operation,
+std::size_t FormulaReader::Add(Operation operation, bool truth, std::size_t left, std::size_t right) {
+  return Add({.operation = operation,
+              .truth = truth,
               .per_robot = nodes_[left].per_robot || nodes_[right].per_robot,
               .left = left,
-              .right = right};
+              .right = right});
 }
 
-FormulaReader::Index FormulaReader::Implication() {
-  TRY(const std::size_t left, Disjunction());
-  if (!Takes("implies")) return left;
+FormulaReader::Index FormulaReader::Read(int least_binding) {
   const Deeper deeper(depth_);
   if (depth_ > kDeepest) return Wrong(fmt::format("it is nested deeper than {}", kDeepest));
-  TRY(NeedTruth(left, "implies"));
-  TRY(Next());
-  TRY(const std::size_t right, Implication());
-  TRY(NeedTruth(right, "implies"));
-  TRY(Node negation, Combined(Operation::kNot, left, left));
-  negation.truth = true;
-  TRY(Node implication, Combined(Operation::kOr, Add(negation), right));
-  implication.truth = true;
-  return Add(implication);
-}
-
-FormulaReader::Index FormulaReader::Disjunction() {
-  TRY(std::size_t left, Conjunction());
-  while (Takes("or") || Takes("||")) {
-    TRY(NeedTruth(left, "or"));
+  const std::size_t begin = token_at_;
+  TRY(std::size_t left, Operand(least_binding));
+  for (const Infix* infix = FindInfix(token_); infix != nullptr && infix->binding >= least_binding;
+       infix = FindInfix(token_)) {
+    const bool of_truths = infix->binding < kPrefix;
+    TRY(Need(of_truths, left, infix->word));
     TRY(Next());
-    TRY(const std::size_t right, Conjunction());
-    TRY(NeedTruth(right, "or"));
-    TRY(Node node, Combined(Operation::kOr, left, right));
-    node.truth = true;
-    left = Add(node);
+    Window window;
+    if (infix->binding == kUntil) {
+      TRY(window, ReadWindow());
+    }
+    TRY(const std::size_t right,
+        infix->word == "/" ? Reciprocal() : Read(infix->binding + (infix->binding == kImplies ? 0 : 1)));
+    TRY(Need(of_truths, right, infix->word));
+    if (infix->binding == kImplies) left = Add(Operation::kNot, true, left, left);
+    left = Add(infix->operation, infix->binding <= kComparison, left, right);
+    nodes_[left].window = window;
+    if (infix->binding == kComparison) nodes_[left].text = text_.substr(begin, last_end_ - begin);
+    if (infix->binding == kUntil && nodes_[left].per_robot) return WrongOfRobots(infix->word);
   }
   return left;
 }
 
-FormulaReader::Index FormulaReader::Conjunction() {
-  TRY(std::size_t left, Until());
-  while (Takes("and") || Takes("&&")) {
-    TRY(NeedTruth(left, "and"));
-    TRY(Next());
-    TRY(const std::size_t right, Until());
-    TRY(NeedTruth(right, "and"));
-    TRY(Node node, Combined(Operation::kAnd, left, right));
-    node.truth = true;
-    left = Add(node);
-  }
-  return left;
+// What has no range to scale by, a quotient by what may be 0, cannot be written.
+FormulaReader::Index FormulaReader::Reciprocal() {
+  TRY(const double divisor, Number());
+  if (divisor == 0.0) return Wrong("it divides by 0");
+  return Add({.operation = Operation::kNumber, .number = 1.0 / divisor});
 }
 
-FormulaReader::Index FormulaReader::Until() {
-  TRY(const std::size_t left, Unary());
-  if (!Takes("until")) return left;
-  TRY(NeedTruth(left, "until"));
-  TRY(Next());
-  TRY(const Window window, ReadWindow());
-  TRY(const std::size_t right, Unary());
-  TRY(NeedTruth(right, "until"));
-  TRY(Node node, Combined(Operation::kUntil, left, right));
-  if (node.per_robot) return Wrong("'until' is of the swarm, not of each robot");
-  node.truth = true;
-  node.window = window;
-  return Add(node);
+Error FormulaReader::WrongOfRobots(std::string_view word) const {
+  return Wrong(fmt::format("'{}' is of the swarm, not of each robot", word));
 }
 
 Result<Window> FormulaReader::ReadWindow() {
@@ -230,97 +235,35 @@ Result<double> FormulaReader::Number() {
   return *number;
 }
 
-FormulaReader::Index FormulaReader::Unary() {
-  const Deeper deeper(depth_);
-  if (depth_ > kDeepest) return Wrong(fmt::format("it is nested deeper than {}", kDeepest));
-  const std::string word(token_);
-  const bool negates = word == "not" || word == "!";
-  if (!negates && word != "always" && word != "eventually") return Comparison();
-  TRY(Next());
-  Window window;
-  if (!negates) {
-    TRY(window, ReadWindow());
-  }
-  TRY(const std::size_t of, Unary());
-  TRY(NeedTruth(of, word));
-  const Operation operation = negates            ? Operation::kNot
-                              : word == "always" ? Operation::kAlways
-                                                 : Operation::kEventually;
-  TRY(Node node, Combined(operation, of, of));
-  if (node.per_robot && !negates) return Wrong(fmt::format("'{}' is of the swarm, not of each robot", word));
-  node.truth = true;
-  node.window = window;
-  return Add(node);
-}
-
-FormulaReader::Index FormulaReader::Comparison() {
-  const std::size_t begin = token_at_;
-  TRY(const std::size_t left, Sum());
-  const std::optional<Operation> operation = Meant(kComparisons, token_);
-  if (!operation) return left;
-  const std::string sign(token_);
-  TRY(NeedNumber(left, sign));
-  TRY(Next());
-  TRY(const std::size_t right, Sum());
-  TRY(NeedNumber(right, sign));
-  TRY(Node node, Combined(*operation, left, right));
-  node.truth = true;
-  node.text = std::string(text_.substr(begin, last_end_ - begin));
-  return Add(node);
-}
-
-FormulaReader::Index FormulaReader::Sum() {
-  TRY(std::size_t left, Product());
-  while (Takes("+") || Takes("-")) {
-    const std::string sign(token_);
-    TRY(NeedNumber(left, sign));
+FormulaReader::Index FormulaReader::Operand(int least_binding) {
+  const std::string_view word = token_;
+  const std::optional<Operation> prefix = Meant(kPrefixes, word);
+  if (prefix && least_binding > kPrefix) return Wrong(fmt::format("'{}' cannot stand here", word));
+  if (prefix) {
     TRY(Next());
-    TRY(const std::size_t right, Product());
-    TRY(NeedNumber(right, sign));
-    TRY(const Node node, Combined(sign == "+" ? Operation::kAdd : Operation::kSubtract, left, right));
-    left = Add(node);
-  }
-  return left;
-}
-
-FormulaReader::Index FormulaReader::Product() {
-  TRY(std::size_t left, Factor());
-  while (Takes("*") || Takes("/")) {
-    const bool divides = Takes("/");
-    TRY(NeedNumber(left, token_));
-    TRY(Next());
-    std::size_t right = 0;
-    if (divides) {
-      // A quotient by what may be 0 has no range to scale by.
-      TRY(const double divisor, Number());
-      if (divisor == 0.0) return Wrong("it divides by 0");
-      right = Add({.operation = Operation::kNumber, .number = 1.0 / divisor});
-    } else {
-      TRY(right, Factor());
-      TRY(NeedNumber(right, "*"));
+    Window window;
+    if (*prefix != Operation::kNot) {
+      TRY(window, ReadWindow());
     }
-    TRY(const Node node, Combined(Operation::kMultiply, left, right));
-    left = Add(node);
+    TRY(const std::size_t of, Read(kPrefix));
+    TRY(Need(true, of, word));
+    if (nodes_[of].per_robot && *prefix != Operation::kNot) return WrongOfRobots(word);
+    const std::size_t node = Add(*prefix, true, of, of);
+    nodes_[node].window = window;
+    return node;
   }
-  return left;
-}
-
-FormulaReader::Index FormulaReader::Factor() {
-  const Deeper deeper(depth_);
-  if (depth_ > kDeepest) return Wrong(fmt::format("it is nested deeper than {}", kDeepest));
   if (token_.empty()) return Wrong("it ends too early: a value or a bracket is missing");
   if (Takes("(")) {
     TRY(Next());
-    TRY(const std::size_t inner, Implication());
+    TRY(const std::size_t inner, Read(kImplies));
     TRY(Expect(")"));
     return inner;
   }
   if (Takes("-")) {
     TRY(Next());
-    TRY(const std::size_t of, Factor());
-    TRY(NeedNumber(of, "-"));
-    TRY(const Node node, Combined(Operation::kNegative, of, of));
-    return Add(node);
+    TRY(const std::size_t of, Read(kTightest));
+    TRY(Need(false, of, "-"));
+    return Add(Operation::kNegative, false, of, of);
   }
   if (IsDigit(token_[0]) || token_[0] == '.') {
     TRY(const double number, Number());
@@ -335,8 +278,7 @@ FormulaReader::Index FormulaReader::Named(const std::string& name) {
   if (const std::optional<Operation> operation = Meant(kOfRobots, name)) return OfRobots(*operation);
   if (const auto sentence = std::ranges::find(sentences_, name, &Sentence::name);
       sentence != sentences_.end()) {
-    if (within_robots_ && nodes_[sentence->node].truth)
-      return Wrong(fmt::format("'{}' is of the swarm, not of each robot", name));
+    if (within_robots_ && nodes_[sentence->node].truth) return WrongOfRobots(name);
     TRY(Next());
     return sentence->node;
   }
@@ -362,9 +304,7 @@ FormulaReader::Index FormulaReader::Named(const std::string& name) {
   for (const MeasureRow& row : rows) {
     if (std::ranges::count(known, row.name) == 0) known.push_back(row.name);
   }
-  for (const auto* words : {&kOfRobots}) {
-    for (const auto& [word, operation] : *words) known.push_back(word);
-  }
+  for (const auto& [word, operation] : kOfRobots) known.push_back(word);
   for (const MetricInfo& metric : metrics_) known.push_back(metric.name);
   return Wrong(UnknownName("measure", name, known));
 }
@@ -373,20 +313,18 @@ FormulaReader::Index FormulaReader::OfNumbers(Operation operation) {
   const std::string name(token_);
   TRY(Next());
   TRY(Expect("("));
-  TRY(std::size_t left, Implication());
-  TRY(NeedNumber(left, name));
+  TRY(std::size_t left, Read(kImplies));
+  TRY(Need(false, left, name));
   if (operation == Operation::kAbsolute) {
-    TRY(const Node node, Combined(operation, left, left));
-    left = Add(node);
-  } else {
-    if (!Takes(",")) return Wrong(fmt::format("'{}' is of two values or more, separated by commas", name));
-    while (Takes(",")) {
-      TRY(Next());
-      TRY(const std::size_t right, Implication());
-      TRY(NeedNumber(right, name));
-      TRY(const Node node, Combined(operation, left, right));
-      left = Add(node);
-    }
+    left = Add(operation, false, left, left);
+  } else if (!Takes(",")) {
+    return Wrong(fmt::format("'{}' is of two values or more, separated by commas", name));
+  }
+  while (operation != Operation::kAbsolute && Takes(",")) {
+    TRY(Next());
+    TRY(const std::size_t right, Read(kImplies));
+    TRY(Need(false, right, name));
+    left = Add(operation, false, left, right);
   }
   TRY(Expect(")"));
   return left;
@@ -398,10 +336,10 @@ FormulaReader::Index FormulaReader::OfRobots(Operation operation) {
   TRY(Next());
   TRY(Expect("("));
   within_robots_ = true;
-  const Index of = Implication();
+  const Index of = Read(kImplies);
   within_robots_ = false;
   if (!of) return of;
-  TRY(operation == Operation::kCount ? NeedTruth(*of, name) : NeedNumber(*of, name));
+  TRY(Need(operation == Operation::kCount, *of, name));
   if (!nodes_[*of].per_robot)
     return Wrong(
         fmt::format("what stands in '{}' is the same for all robots: say something of each, such as "

@@ -37,27 +37,22 @@ class FormulaReader {
   bool Takes(std::string_view word);
   Status Expect(std::string_view word);
   Error Wrong(const std::string& what) const;
+  Error WrongOfRobots(std::string_view word) const;
+  Status Need(bool truth, std::size_t node, std::string_view of) const;
   std::size_t Add(Node node);
-  Result<double> Number();
-  Result<double> Second();
+  std::size_t Add(Operation operation, bool truth, std::size_t left, std::size_t right);
 
-  Index Implication();
-  Index Disjunction();
-  Index Conjunction();
-  Index Until();
-  Index Unary();
-  Index Comparison();
-  Index Sum();
-  Index Product();
-  Index Factor();
+  // Up to what binds less.
+  Index Read(int least_binding);
+  Index Operand(int least_binding);
+  Index Reciprocal();
   Index Named(const std::string& name);
   Index OfNumbers(Operation operation);
   Index OfRobots(Operation operation);
   Index Measure(std::size_t row);
   Result<Window> ReadWindow();
-  Result<Node> Combined(Operation operation, std::size_t left, std::size_t right) const;
-  Status NeedTruth(std::size_t node, std::string_view of) const;
-  Status NeedNumber(std::size_t node, std::string_view of) const;
+  Result<double> Number();
+  Result<double> Second();
 
   std::span<const MetricInfo> metrics_;
   const std::vector<Sentence>& sentences_;
