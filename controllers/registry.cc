@@ -198,6 +198,7 @@ Result<sim::Judge> JudgeOf(const sim::RunSpec& spec) {
     for (std::size_t i = 0; i < under_test.size(); ++i) {
       if (under_test[i]) robots.push_back(static_cast<sim::RobotIndex>(i));
     }
+    if (robots.empty()) return;
     judge.Judge(observer, run.arena(), std::move(robots), outcome);
   });
 }
