@@ -118,7 +118,7 @@ Result<std::size_t> FormulaReader::Read(std::string_view text) {
   rest_ = 0;
   TRY(Next());
   if (token_.empty()) return InvalidInput("the formula is empty");
-  TRY(const std::size_t node, Read(kImplies));
+  TRY(const std::size_t node, Expression(kImplies));
   if (!token_.empty()) return Wrong(fmt::format("'{}' cannot stand here", token_));
   return node;
 }
@@ -170,7 +170,7 @@ std::size_t FormulaReader::Add(Operation operation, bool truth, std::size_t left
               .right = right});
 }
 
-FormulaReader::Index FormulaReader::Read(int least_binding) {
+FormulaReader::Index FormulaReader::Expression(int least_binding) {
   const Deeper deeper(depth_);
   if (depth_ > kDeepest) return Wrong(fmt::format("it is nested deeper than {}", kDeepest));
   const std::size_t begin = token_at_;
@@ -184,8 +184,9 @@ FormulaReader::Index FormulaReader::Read(int least_binding) {
     if (infix->binding == kUntil) {
       TRY(window, ReadWindow());
     }
-    TRY(const std::size_t right,
-        infix->word == "/" ? Reciprocal() : Read(infix->binding + (infix->binding == kImplies ? 0 : 1)));
+    TRY(const std::size_t right, infix->word == "/"
+                                     ? Reciprocal()
+                                     : Expression(infix->binding + (infix->binding == kImplies ? 0 : 1)));
     TRY(Need(of_truths, right, infix->word));
     if (infix->binding == kImplies) left = Add(Operation::kNot, true, left, left);
     left = Add(infix->operation, infix->binding <= kComparison, left, right);
@@ -245,7 +246,7 @@ FormulaReader::Index FormulaReader::Operand(int least_binding) {
     if (*prefix != Operation::kNot) {
       TRY(window, ReadWindow());
     }
-    TRY(const std::size_t of, Read(kPrefix));
+    TRY(const std::size_t of, Expression(kPrefix));
     TRY(Need(true, of, word));
     if (nodes_[of].per_robot && *prefix != Operation::kNot) return WrongOfRobots(word);
     const std::size_t node = Add(*prefix, true, of, of);
@@ -255,13 +256,13 @@ FormulaReader::Index FormulaReader::Operand(int least_binding) {
   if (token_.empty()) return Wrong("it ends too early: a value or a bracket is missing");
   if (Takes("(")) {
     TRY(Next());
-    TRY(const std::size_t inner, Read(kImplies));
+    TRY(const std::size_t inner, Expression(kImplies));
     TRY(Expect(")"));
     return inner;
   }
   if (Takes("-")) {
     TRY(Next());
-    TRY(const std::size_t of, Read(kTightest));
+    TRY(const std::size_t of, Expression(kTightest));
     TRY(Need(false, of, "-"));
     return Add(Operation::kNegative, false, of, of);
   }
@@ -313,7 +314,7 @@ FormulaReader::Index FormulaReader::OfNumbers(Operation operation) {
   const std::string name(token_);
   TRY(Next());
   TRY(Expect("("));
-  TRY(std::size_t left, Read(kImplies));
+  TRY(std::size_t left, Expression(kImplies));
   TRY(Need(false, left, name));
   if (operation == Operation::kAbsolute) {
     left = Add(operation, false, left, left);
@@ -322,7 +323,7 @@ FormulaReader::Index FormulaReader::OfNumbers(Operation operation) {
   }
   while (operation != Operation::kAbsolute && Takes(",")) {
     TRY(Next());
-    TRY(const std::size_t right, Read(kImplies));
+    TRY(const std::size_t right, Expression(kImplies));
     TRY(Need(false, right, name));
     left = Add(operation, false, left, right);
   }
@@ -336,7 +337,7 @@ FormulaReader::Index FormulaReader::OfRobots(Operation operation) {
   TRY(Next());
   TRY(Expect("("));
   within_robots_ = true;
-  const Index of = Read(kImplies);
+  const Index of = Expression(kImplies);
   within_robots_ = false;
   if (!of) return of;
   TRY(Need(operation == Operation::kCount, *of, name));

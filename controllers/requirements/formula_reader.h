@@ -43,7 +43,7 @@ class FormulaReader {
   std::size_t Add(Operation operation, bool truth, std::size_t left, std::size_t right);
 
   // Up to what binds less.
-  Index Read(int least_binding);
+  Index Expression(int least_binding);
   Index Operand(int least_binding);
   Index Reciprocal();
   Index Named(const std::string& name);

@@ -84,4 +84,15 @@ void ExpectQuoted(const DocumentedPage& page, const std::string& said) {
   }
 }
 
+void ExpectCommandsSayWhatIsQuoted(const std::string& file, std::size_t least_commands,
+                                   std::size_t least_quoted) {
+  const TemporaryDirectory scratch;
+  const DocumentedPage page = ReadPage(file);
+  EXPECT_GE(page.commands.size(), least_commands);
+  EXPECT_GE(page.quoted.size(), least_quoted);
+  const ProcessResult result = RunCommands(page, scratch.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ExpectQuoted(page, AsRead(result.out, scratch.path()));
+}
+
 }  // namespace gauntlet::testing_support

@@ -19,6 +19,9 @@ DocumentedPage ReadPage(const std::string& file);
 
 // Runs its commands in their order in `folder`, until one of them fails.
 ProcessResult RunCommands(const DocumentedPage& page, const std::string& folder);
+// Runs the page's commands in a folder of their own, and expects what it quotes in what they said.
+void ExpectCommandsSayWhatIsQuoted(const std::string& file, std::size_t least_commands,
+                                   std::size_t least_quoted);
 // The text of the first fenced block of the page, TOML or JSON.
 std::string FencedText(const std::string& file, const std::string& language);
 

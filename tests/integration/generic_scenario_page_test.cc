@@ -23,13 +23,7 @@ std::string TextOf(const std::string& file) {
 }
 
 TEST(GenericScenarioPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
-  const TemporaryDirectory scratch;
-  const DocumentedPage page = ReadPage("generic-scenario.md");
-  EXPECT_GE(page.commands.size(), 7U);
-  EXPECT_GE(page.quoted.size(), 6U);
-  const ProcessResult result = RunCommands(page, scratch.path());
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  ExpectQuoted(page, AsRead(result.out, scratch.path()));
+  ExpectCommandsSayWhatIsQuoted("generic-scenario.md", 7, 6);
 }
 
 TEST(GenericScenarioPageTest, ItsFileIsTheShippedOne) {

@@ -12,13 +12,7 @@ namespace {
 constexpr const char* kPage = "requirements.md";
 
 TEST(RequirementsPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
-  const TemporaryDirectory scratch;
-  const DocumentedPage page = ReadPage(kPage);
-  EXPECT_EQ(page.commands.size(), 4U);
-  EXPECT_EQ(page.quoted.size(), 5U);
-  const ProcessResult result = RunCommands(page, scratch.path());
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  ExpectQuoted(page, AsRead(result.out, scratch.path()));
+  ExpectCommandsSayWhatIsQuoted(kPage, 4, 5);
 }
 
 TEST(RequirementsPageTest, ItsExampleIsTheShippedOne) {
