@@ -14,6 +14,12 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   return parts;
 }
 
+std::vector<std::string> WordsOf(std::string_view text) {
+  std::vector<std::string> words = Split(text, ' ');
+  std::erase(words, "");
+  return words;
+}
+
 std::string_view Trimmed(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n";
   const std::size_t begin = text.find_first_not_of(kSpace);

@@ -56,6 +56,7 @@ void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
 void AddFit(CommandParser& parser);
 void AddMargin(CommandParser& parser);
+void AddProbability(CommandParser& parser);
 void AddRepair(CommandParser& parser);
 void AddAdopt(CommandParser& parser);
 void AddBuildController(CommandParser& parser);
@@ -67,10 +68,19 @@ void AddStop(CommandParser& parser);
 void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
-inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddExamine, AddEvolve, AddRandom, AddResume,  AddShow,   AddReplay, AddQuestions,
-    AddMargin,  AddRepair, AddCorpus, AddCompare, AddStudy,  AddTune,   AddFit,
-    AddReport,  AddUi,     AddFigure, AddExport,  AddImport, AddAdopt,  AddBuildController,
-    AddSubmit,  AddMaster, AddStatus, AddWatch,   AddStop,   AddList};
+inline constexpr void (*kCommands[])(CommandParser&) = {AddExamine,     AddEvolve,
+                                                        AddRandom,      AddResume,
+                                                        AddShow,        AddReplay,
+                                                        AddQuestions,   AddMargin,
+                                                        AddProbability, AddRepair,
+                                                        AddCorpus,      AddCompare,
+                                                        AddStudy,       AddTune,
+                                                        AddFit,         AddReport,
+                                                        AddUi,          AddFigure,
+                                                        AddExport,      AddImport,
+                                                        AddAdopt,       AddBuildController,
+                                                        AddSubmit,      AddMaster,
+                                                        AddStatus,      AddWatch,
+                                                        AddStop,        AddList};
 
 }  // namespace gauntlet

@@ -20,6 +20,8 @@
 #include "proto/run_failure.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
+#include "study/questions/chosen_cases.h"
+#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {
@@ -255,6 +257,26 @@ Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPla
   };
   TRY(const ExitCode code, RunCampaign(context, campaign));
   return code == kExitDone ? told : code;
+}
+
+Result<std::vector<sim::TestCase>> GivenCases(CommandContext& context, const std::string& on,
+                                              const Experiment& experiment, bool quiet) {
+  TRY(const ChosenCases chosen, ChooseCases(on, experiment));
+  std::vector<sim::TestCase> cases;
+  std::size_t refused = 0;
+  for (const ChosenCases::Group& group : chosen.groups) {
+    for (const sim::TestCase& one : group.cases) {
+      if (RefusalOf(experiment, one)) {
+        ++refused;
+      } else {
+        cases.push_back(one);
+      }
+    }
+  }
+  if (quiet) return cases;
+  for (const std::string& note : chosen.notes) PrintMessage(context, note);
+  if (refused > 0) PrintMessage(context, Counted(refused, "case") + " left out, as a rule is broken");
+  return cases;
 }
 
 }  // namespace gauntlet

@@ -46,4 +46,8 @@ Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPla
                             const LocalOptions& options,
                             const std::function<Result<ExitCode>(const std::string& directory)>& tell);
 
+// The cases that --on chooses and that the swarm can be put into; how many were left out is said.
+Result<std::vector<sim::TestCase>> GivenCases(CommandContext& context, const std::string& on,
+                                              const Experiment& experiment, bool quiet);
+
 }  // namespace gauntlet

@@ -111,6 +111,7 @@ using History = std::function<Status(const std::function<void(const EvaluationOu
 class CaseStream;
 class FitRounds;
 class MarginStages;
+class ProbabilityCourse;
 class RepairCourse;
 
 class SearchAlgorithm {
@@ -137,6 +138,8 @@ class SearchAlgorithm {
   virtual const MarginStages* Margin() const { return nullptr; }
   // Of a search for a repair; else nullptr.
   virtual const RepairCourse* Repair() const { return nullptr; }
+  // Of a search for a failure probability; else nullptr.
+  virtual const ProbabilityCourse* Probability() const { return nullptr; }
   // Of a search to which cases are added; else nullptr.
   virtual CaseStream* Stream() { return nullptr; }
   // Individuals born since the last call, so that they can be stored once.

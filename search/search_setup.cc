@@ -93,6 +93,8 @@ std::string SearchIdentity(const SearchSetup& setup) {
   if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
   if (!experiment.requirements.empty())
     identity += fmt::format("requirements = {}\n", experiment.requirements);
+  if (!experiment.conditions.empty() && Reads(search, "conditions"))
+    identity += fmt::format("conditions = {}\n", experiment.conditions);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
   if (setup.row->handed_cases()) {

@@ -20,6 +20,7 @@
 #include "search/given/case_stream.h"
 #include "search/given/repeated_case.h"
 #include "search/margin/margin_search.h"
+#include "search/probability/probability_search.h"
 #include "search/repair/repair_search.h"
 #include "sim/robot/disturbances.h"
 
@@ -34,7 +35,7 @@ std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
                                   MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow(),
-                                  MarginRow(),         RepairRow(),      StreamRow()};
+                                  MarginRow(),         RepairRow(),      ProbabilityRow(),  StreamRow()};
   return rows;
 }
 

@@ -9,8 +9,6 @@
 #include "master/directory/campaign_directory.h"
 #include "search/search_table.h"
 #include "study/margins/margin_result.h"
-#include "study/questions/chosen_cases.h"
-#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {
@@ -22,27 +20,6 @@ struct MarginOptions : LocalOptions {
   std::string share;
 };
 
-// The chosen cases that the swarm can be put into.
-Result<std::vector<sim::TestCase>> CasesOf(CommandContext& context, const MarginOptions& options,
-                                           const Experiment& experiment) {
-  TRY(const ChosenCases chosen, ChooseCases(options.on.empty() ? "random:200" : options.on, experiment));
-  std::vector<sim::TestCase> cases;
-  std::size_t refused = 0;
-  for (const ChosenCases::Group& group : chosen.groups) {
-    for (const sim::TestCase& one : group.cases) {
-      if (RefusalOf(experiment, one)) {
-        ++refused;
-      } else {
-        cases.push_back(one);
-      }
-    }
-  }
-  if (options.running.quiet) return cases;
-  for (const std::string& note : chosen.notes) PrintMessage(context, note);
-  if (refused > 0) PrintMessage(context, Counted(refused, "case") + " left out, as a rule is broken");
-  return cases;
-}
-
 // A search for each key, over the same cases.
 Result<std::vector<SearchPlan>> PlanMargins(CommandContext& context, const MarginOptions& options) {
   if (options.vary.empty())
@@ -53,7 +30,8 @@ Result<std::vector<SearchPlan>> PlanMargins(CommandContext& context, const Margi
   if (!options.share.empty()) extra.push_back({"--share", "margin.share", options.share});
   TRY(const Experiment experiment, LoadExperimentWith(options.experiment, extra));
   TRY(const auto varied, ParseVariedKeys(options.vary, AllKeysOf(experiment), experiment));
-  TRY(const std::vector<sim::TestCase> cases, CasesOf(context, options, experiment));
+  TRY(const std::vector<sim::TestCase> cases,
+      GivenCases(context, options.on.empty() ? "random:200" : options.on, experiment, options.running.quiet));
   std::vector<SearchPlan> plans;
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const std::string& path = varied[i].key.path;

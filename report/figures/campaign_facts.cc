@@ -191,6 +191,8 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
     TRY(facts.margins, ReadMargins(dir));
   } else if (Reads(row.info, "repair.vary")) {
     TRY(facts.repair, ReadRepair(dir));
+  } else if (Reads(row.info, "probability.runs")) {
+    TRY(facts.probability, ReadProbability(dir));
   }
   for (const auto question : kQuestions) {
     TRY(auto told, ToldCases(question(), dir));

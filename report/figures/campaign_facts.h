@@ -12,6 +12,7 @@
 #include "master/store/result_store.h"
 #include "study/fits/fit_result.h"
 #include "study/margins/margin_result.h"
+#include "study/probabilities/probability_result.h"
 #include "study/questions/confirmations.h"
 #include "study/questions/question.h"
 #include "study/repairs/repair_result.h"
@@ -63,10 +64,11 @@ struct CampaignFacts {
   std::vector<SearchPlan> plans;
   CampaignSummary summary;
   CampaignAnswers answers;
-  std::optional<FitResult> fit = std::nullopt;  // that the campaign is
-  std::vector<Margin> margins = {};             // that it looks for
-  std::optional<Repair> repair = std::nullopt;  // that it is
-  std::vector<ToldCase> told_cases = {};        // what questions about them say, one question after the other
+  std::optional<FitResult> fit = std::nullopt;                   // that the campaign is
+  std::vector<Margin> margins = {};                              // that it looks for
+  std::optional<Repair> repair = std::nullopt;                   // that it is
+  std::optional<FailureProbability> probability = std::nullopt;  // that it looks for
+  std::vector<ToldCase> told_cases = {};  // what questions about them say, one question after the other
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
   std::vector<RunFacts> runs;      // in logical order, search by search

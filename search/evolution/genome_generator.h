@@ -2,7 +2,9 @@
 // breaks no validity rule, and the whole case starts anew when one gene cannot be placed.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "base/result.h"
 #include "search/experiment/experiment.h"
@@ -11,6 +13,13 @@
 #include "sim/random/random_stream.h"
 
 namespace gauntlet {
+
+// What a gene of a random case comes of: the first gene that was drawn for it, and the key of the stream of
+// those that are drawn where that one cannot be placed.
+struct GeneDraw {
+  sim::ObstacleGene first;
+  std::uint64_t others = 0;
+};
 
 // Draws genes and whole test cases. Immutable; every draw is a function of the stream it is given.
 class GenomeGenerator {
@@ -31,6 +40,14 @@ class GenomeGenerator {
   // starts, and the message names the ranges.
   Result<sim::TestCase> RandomTestCase(sim::RandomStream& random) const;
 
+  GeneDraw DrawGene(sim::RandomStream& random) const;
+  // A gene near this one: its place, sizes and angle moved by up to the share `reach` of their ranges, in (0,
+  // .5], and turned back at their ends, so that the way back is as probable. Motion and light stay.
+  sim::ObstacleGene NearGene(sim::ObstacleGene gene, double reach, sim::RandomStream& random) const;
+  // The valid case that comes of these draws, a function of them: when draws are random, the case has the
+  // distribution of RandomTestCase. `draws`: spec().genes of them. Error: as RandomTestCase.
+  Result<sim::TestCase> CaseOf(std::span<const GeneDraw> draws) const;
+
   // The arena with these obstacles.
   sim::TestCase WithObstacles(sim::Genome genome) const;
   // Whether a genome breaks no validity rule in this arena.
@@ -43,10 +60,11 @@ class GenomeGenerator {
   sim::Vec2 DrawPlace(sim::RandomStream& random) const;
   void SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const;
   // Nothing when a gene found no place in tries_per_gene draws. `append` puts it into the arena, or says why
-  // not.
-  template <typename Append>
-  std::optional<sim::Genome> TryGenome(const Append& append, sim::RandomStream& random) const;
-  std::optional<sim::Genome> TryGenome(sim::RandomStream& random) const;
+  // not; `source` gives a gene for a place in the genome.
+  template <typename Append, typename Source>
+  std::optional<sim::Genome> TryGenome(const Append& append, Source& source) const;
+  template <typename Source>
+  std::optional<sim::Genome> TryGenome(Source& source) const;
 
   GenomeSpec spec_;
   sim::TestCase arena_;

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "base/number_text.h"
+#include "base/split.h"
 #include "controllers/generic/definition.h"
 #include "controllers/registry.h"
 #include "controllers/requirements/requirements.h"
 #include "search/experiment/schema.h"
+#include "search/experiment/varied_keys.h"
 
 namespace gauntlet {
 namespace {
@@ -49,6 +51,7 @@ using controllers::requirements::kStep;
 using controllers::requirements::Requirements;
 
 constexpr std::string_view kBeginRequirements = "requirements.";
+constexpr std::string_view kBeginConditions = "conditions.";
 
 struct Entry {
   std::string name;
@@ -58,16 +61,18 @@ struct Entry {
   int Rank() const { return name == kStep ? 0 : name == kFailure ? 2 : 1; }
 };
 
-Result<std::vector<Entry>> RequirementsIn(std::span<const Assignment> assignments) {
+// Of a table whose names stand behind `begin`; the later of one name wins, and what is "" is taken back.
+Result<std::vector<Entry>> EntriesIn(std::span<const Assignment> assignments, std::string_view begin,
+                                     std::string_view expected) {
   std::vector<Entry> entries;
   for (const Assignment& assignment : assignments) {
-    if (!assignment.path.starts_with(kBeginRequirements)) continue;
+    if (!assignment.path.starts_with(begin)) continue;
     const auto* formula = std::get_if<std::string>(&assignment.value);
     if (formula == nullptr && assignment.text.empty())
-      return InvalidInput(fmt::format("{}: {} is {}, expected a formula as text", assignment.where,
-                                      assignment.path, KindOf(assignment.value)));
-    Entry entry{assignment.path.substr(kBeginRequirements.size()),
-                formula == nullptr ? assignment.text : *formula, assignment.where};
+      return InvalidInput(fmt::format("{}: {} is {}, expected {} as text", assignment.where, assignment.path,
+                                      KindOf(assignment.value), expected));
+    Entry entry{assignment.path.substr(begin.size()), formula == nullptr ? assignment.text : *formula,
+                assignment.where};
     std::ranges::replace_if(
         entry.formula, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     const auto before = std::ranges::find(entries, entry.name, &Entry::name);
@@ -78,7 +83,6 @@ Result<std::vector<Entry>> RequirementsIn(std::span<const Assignment> assignment
     }
   }
   std::erase_if(entries, [](const Entry& entry) { return entry.formula.empty(); });
-  std::ranges::stable_sort(entries, {}, &Entry::Rank);
   return entries;
 }
 
@@ -139,8 +143,9 @@ bool InRequirements(std::string_view path) {
 
 Result<std::string> ReadRequirements(std::span<const Assignment> assignments, const std::string& file_name,
                                      const std::vector<controllers::MetricInfo>& metrics) {
-  TRY(const std::vector<Entry> entries, RequirementsIn(assignments));
+  TRY(std::vector<Entry> entries, EntriesIn(assignments, kBeginRequirements, "a formula"));
   if (entries.empty()) return std::string();
+  std::ranges::stable_sort(entries, {}, &Entry::Rank);
   Requirements requirements(metrics);
   std::string text;
   for (const Entry& entry : entries) {
@@ -174,6 +179,34 @@ std::vector<std::pair<std::string, std::string>> RequirementSettings(const std::
       controllers::requirements::EntriesOf(requirements);
   for (auto& [name, formula] : settings) name.insert(0, kBeginRequirements);
   return settings;
+}
+
+bool InConditions(std::string_view path) {
+  return path.starts_with(kBeginConditions);
+}
+
+Result<std::string> ReadConditions(std::span<const Assignment> assignments, std::span<const Key> keys,
+                                   const Experiment& experiment) {
+  TRY(std::vector<Entry> entries,
+      EntriesIn(assignments, kBeginConditions, "a distribution such as \"0..0.2\""));
+  std::string text;
+  for (Entry& entry : entries) {
+    std::erase(entry.formula, ' ');
+    const auto varied = ParseVariedKeys({entry.name + "=" + entry.formula}, keys, experiment, Varied::kDrawn);
+    if (!varied) return InvalidInput(fmt::format("{}: {}", entry.where, varied.error().message));
+    text += (text.empty() ? "" : " ") + varied->front().ToText();
+  }
+  return text;
+}
+
+std::string WriteConditions(const std::string& conditions) {
+  std::string text;
+  for (const std::string& one : WordsOf(conditions)) {
+    const std::size_t equals = one.find('=');
+    text += fmt::format("{}{} = {}\n", text.empty() ? "\n[conditions]\n" : "", one.substr(0, equals),
+                        QuoteToml(one.substr(equals + 1)));
+  }
+  return text;
 }
 
 }  // namespace gauntlet

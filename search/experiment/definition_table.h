@@ -1,5 +1,5 @@
 // The tables of an experiment that have a language of their own: [generic] and the lists in it,
-// [[generic.light]] and on, which define a scenario, and [requirements].
+// [[generic.light]] and on, which define a scenario, [requirements], and [conditions].
 #pragma once
 
 #include <span>
@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "controllers/behaviour.h"
 #include "search/experiment/experiment.h"
+#include "search/experiment/schema.h"
 #include "search/experiment/toml_text.h"
 
 namespace gauntlet {
@@ -51,5 +52,17 @@ std::string WriteRequirements(const std::string& requirements);
 
 // The same as keys and values, as they are typed behind --set.
 std::vector<std::pair<std::string, std::string>> RequirementSettings(const std::string& requirements);
+
+// --- [conditions], the distribution over which a failure probability is asked for ---
+
+bool InConditions(std::string_view path);
+
+// What these of the assignments draw, as the text of Experiment::conditions. `keys`: of the experiment.
+// Error: that of ParseVariedKeys, behind the assignment's place.
+Result<std::string> ReadConditions(std::span<const Assignment> assignments, std::span<const Key> keys,
+                                   const Experiment& experiment);
+
+// The table that ReadConditions reads that text from; "" of none.
+std::string WriteConditions(const std::string& conditions);
 
 }  // namespace gauntlet

@@ -117,6 +117,15 @@ struct RepairSpec {
   std::string search = "genetic";  // of the repaired experiment, in place of the repair
 };
 
+// What is asked of a failure probability (search/probability).
+struct ProbabilitySpec {
+  double below = 0.0;    // that it is compared with; 0 = none
+  double within = 0.25;  // narrow enough: half the interval, as a share of the estimate; 0 = never
+  int runs = 20'000;     // at most
+  bool plain = false;    // by plain samples, however rare failures are
+  std::string weights;   // of given cases, blanks in between; "" = equal ones
+};
+
 struct Experiment : sim::RunSettings {
   std::string name;
   std::string description;
@@ -126,6 +135,10 @@ struct Experiment : sim::RunSettings {
   FitSpec fit;
   MarginSpec margin;
   RepairSpec repair;
+  ProbabilitySpec probability;
+  // What is drawn of it and from which distribution, VariedKey::ToText with blanks in between: the table
+  // [conditions].
+  std::string conditions;
   std::uint64_t seed = 1;
   StoreSpec store;
 };

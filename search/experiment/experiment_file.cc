@@ -49,6 +49,7 @@ class Reader {
     TRY(AssignAll(/*base=*/false));
     TRY(Define());
     TRY(experiment_.requirements, ReadRequirements(assignments_, file_name_, scenario_->metrics));
+    TRY(experiment_.conditions, ReadConditions(assignments_, keys_, experiment_));
     for (const Key& key : keys_) {
       if (SaidByRectangle(experiment_, key.path)) key.set(experiment_, key.default_value);
     }
@@ -65,7 +66,7 @@ class Reader {
     for (const Assignment& assignment : assignments_) {
       const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
       if (base != is_base || InDefinition(assignment.path) || InCommand(assignment.path) ||
-          InRequirements(assignment.path))
+          InRequirements(assignment.path) || InConditions(assignment.path))
         continue;
       TRY(Assign(assignment));
     }
@@ -342,6 +343,7 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
   }
   text += WriteDefinition(experiment.definition);
   text += WriteRequirements(experiment.requirements);
+  text += WriteConditions(experiment.conditions);
   return text;
 }
 

@@ -185,6 +185,24 @@ std::vector<Key> MarginKeys() {
   return keys;
 }
 
+std::vector<Key> ProbabilityKeys() {
+  constexpr auto kProbability = &Experiment::probability;
+  std::vector<Key> keys = {
+      NumberKey<kProbability, &ProbabilitySpec::below>("probability.below", "", 0, 0.999999,
+                                                       "that the probability is compared with; 0 = none"),
+      NumberKey<kProbability, &ProbabilitySpec::within>(
+          "probability.within", "", 0, 1,
+          "narrow enough: half the interval, as a share of the estimate; 0 = never"),
+      NumberKey<kProbability, &ProbabilitySpec::runs>("probability.runs", "", 100, 1e8, "at most"),
+      FieldKey<kProbability, &ProbabilitySpec::plain>("probability.plain",
+                                                      "by plain samples, however rare failures are"),
+      FieldKey<kProbability, &ProbabilitySpec::weights>(
+          "probability.weights", "of given cases, with spaces between them; \"\" = equal ones"),
+  };
+  for (Key& key : keys) key.rare = key.came_later = true;
+  return keys;
+}
+
 std::vector<Key> RepairKeys(const Catalogue& catalogue) {
   constexpr auto kRepair = &Experiment::repair;
   std::vector<Key> keys = {
@@ -292,6 +310,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add(FitKeys(catalogue), &Key::of_searches);
   add(MarginKeys(), &Key::of_searches);
   add(RepairKeys(catalogue), &Key::of_searches);
+  add(ProbabilityKeys(), &Key::of_searches);
   add(RandomFaultKeys(), &Key::disturbs);
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(

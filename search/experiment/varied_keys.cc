@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::string_view kRange = "..";
 constexpr std::string_view kLog = ":log";
+constexpr std::string_view kNormal = ":normal";
+constexpr double kNormalEnds = 2.0;  // standard deviations from the middle
 
 // Genes lie on the grid that the experiment gives them.
 bool OnGrid(const std::string& path) {
@@ -42,51 +44,102 @@ std::string WithDigits(double number, int digits) {
   return {text.data(), end};
 }
 
-Error Wrong(const std::string& text, const std::string& what) {
-  return InvalidInput(fmt::format("--vary {}: {}", text, what));
+// Of a place, in standard deviations from the middle.
+double DeviateAt(double place) {
+  constexpr double kBelow = 0.02275013194817921;  // the ends
+  return std::clamp(sim::NormalDeviate(kBelow + place * (1.0 - 2.0 * kBelow)), -kNormalEnds, kNormalEnds);
 }
 
-Result<VariedKey> RangeOf(const std::string& text, VariedKey varied, std::string_view range) {
-  if (range.ends_with(kLog)) {
-    varied.log = true;
-    range.remove_suffix(kLog.size());
+// What is read of one text, and what it is called.
+struct Reading {
+  std::string text;
+  Varied varied;
+
+  Error Wrong(const std::string& what) const {
+    return InvalidInput(
+        fmt::format("{} {}: {}", varied == Varied::kDrawn ? "[conditions]" : "--vary", text, what));
   }
+};
+
+Result<VariedKey> RangeOf(const Reading& reading, VariedKey varied, std::string_view range) {
+  const auto take = [&](std::string_view ending, bool& taken) {
+    taken = range.ends_with(ending);
+    if (taken) range.remove_suffix(ending.size());
+  };
+  take(kLog, varied.log);
+  if (reading.varied == Varied::kDrawn) take(kNormal, varied.normal);
+  const auto wrong = [&](const std::string& what) { return reading.Wrong(what); };
   const std::size_t middle = range.find(kRange);
   const auto low = ParseNumber<double>(range.substr(0, middle));
   const auto high = ParseNumber<double>(range.substr(middle + kRange.size()));
   if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high))
-    return Wrong(text, fmt::format("'{}' is no range of two numbers, as in 0.5..2", range));
+    return wrong(fmt::format("'{}' is no range of two numbers, as in 0.5..2", range));
   varied.low = *low;
   varied.high = *high;
   const Key& key = varied.key;
   for (const double end : {*low, *high}) {
     if (key.type == KeyType::kInteger && end != std::floor(end))
-      return Wrong(text, fmt::format("{} is {}, and {} is none", key.path, ExpectationOf(key), end));
-    if (const auto wrong = CheckValue(key, NumberFor(key, end))) return Wrong(text, *wrong);
+      return wrong(fmt::format("{} is {}, and {} is none", key.path, ExpectationOf(key), end));
+    if (const auto refused = CheckValue(key, NumberFor(key, end))) return wrong(*refused);
   }
-  if (*low >= *high) return Wrong(text, fmt::format("{} is not below {}", *low, *high));
+  if (*low >= *high) return wrong(fmt::format("{} is not below {}", *low, *high));
   if (varied.log && *low <= 0.0)
-    return Wrong(text, fmt::format("the range begins at {}, which has no logarithm", *low));
+    return wrong(fmt::format("the range begins at {}, which has no logarithm", *low));
   return varied;
 }
 
-Result<VariedKey> ListOf(const std::string& text, VariedKey varied, const std::string& list) {
-  for (const std::string& word : Split(list, '|')) {
+// The weight behind a word's last colon, which is cut off; 1 where there is none.
+Result<double> WeightOf(const Reading& reading, std::string& word) {
+  const std::size_t colon = word.rfind(':');
+  if (reading.varied != Varied::kDrawn || colon == std::string::npos) return 1.0;
+  const std::string text = word.substr(colon + 1);
+  const auto weight = ParseNumber<double>(text);
+  if (!weight || !std::isfinite(*weight) || *weight < 0.0)
+    return reading.Wrong(
+        fmt::format("'{}' is no weight of {}: want a number from 0 on", text, word.substr(0, colon)));
+  word.resize(colon);
+  return *weight;
+}
+
+Result<VariedKey> ListOf(const Reading& reading, VariedKey varied, const std::string& list) {
+  const auto wrong = [&](const std::string& what) { return reading.Wrong(what); };
+  double sum = 0.0;
+  for (std::string word : Split(list, '|')) {
+    TRY(const double weight, WeightOf(reading, word));
     TRY(const Assignment assignment, ReadSet(varied.key.path + "=" + word, "--vary"));
+    varied.weights.push_back(weight);
+    sum += weight;
     TRY(KeyValue value, ValueFor(varied.key, assignment));
     if (std::ranges::find(varied.values, value) != varied.values.end())
-      return Wrong(text, fmt::format("{} stands twice", word));
+      return wrong(fmt::format("{} stands twice", word));
     varied.values.push_back(std::move(value));
   }
   if (varied.values.size() < 2)
-    return Wrong(text, fmt::format("{} is a single value: LOW..HIGH or A|B is needed", list));
+    return wrong(fmt::format("{} is a single value: LOW..HIGH or A|B is needed", list));
+  if (sum <= 0.0) return wrong("the weights sum to nothing");
+  const bool equal = std::ranges::count(varied.weights, varied.weights.front()) == std::ssize(varied.weights);
+  if (equal) varied.weights.clear();
+  for (double& weight : varied.weights) weight /= sum;
   return varied;
+}
+
+// Of the list, by the weights.
+std::size_t EntryAt(const VariedKey& varied, double place) {
+  if (varied.weights.empty()) {
+    const auto index = static_cast<std::size_t>(place * static_cast<double>(varied.values.size()));
+    return std::min(index, varied.values.size() - 1);
+  }
+  std::size_t entry = 0;
+  for (double end = varied.weights[0]; place >= end && entry + 1 < varied.values.size();)
+    end += varied.weights[++entry];
+  while (varied.weights[entry] == 0.0) --entry;  // only rounding leads behind the last that has a weight
+  return entry;
 }
 
 }  // namespace
 
 std::optional<std::string> WhyItCannotVary(const Key& key) {
-  for (const std::string_view of_searches : {"search.", "fit.", "margin.", "repair."}) {
+  for (const std::string_view of_searches : {"search.", "fit.", "margin.", "repair.", "probability."}) {
     if (key.path.starts_with(of_searches)) return "says how is searched";
   }
   if (key.type == KeyType::kSeed) return "gives every run its seed";
@@ -96,16 +149,21 @@ std::optional<std::string> WhyItCannotVary(const Key& key) {
 }
 
 KeyValue VariedKey::ValueAt(double place) const {
-  if (listed()) {
-    const auto index = static_cast<std::size_t>(place * static_cast<double>(values.size()));
-    return values[std::min(index, values.size() - 1)];
-  }
+  if (listed()) return values[EntryAt(*this, place)];
   // A whole number has as much room as the others.
   const double margin = key.type == KeyType::kInteger ? 0.5 : 0.0;
+  if (normal) place = 0.5 + 0.5 * DeviateAt(place) / kNormalEnds;
   double number = log ? sim::Exp(sim::Log(low) + place * (sim::Log(high) - sim::Log(low)))
                       : low - margin + place * (high - low + 2.0 * margin);
   if (step > 0.0) number = low + std::round((number - low) / step) * step;
   return NumberFor(key, std::clamp(number, low, high));
+}
+
+double VariedKey::DensityAt(double place) const {
+  if (listed())
+    return weights.empty() ? 1.0 : weights[EntryAt(*this, place)] / *std::ranges::max_element(weights);
+  if (normal) return sim::Exp(-0.5 * DeviateAt(place) * DeviateAt(place));
+  return log ? low / NumberOf(ValueAt(place)) : 1.0;
 }
 
 double VariedKey::PlaceOf(const KeyValue& value) const {
@@ -129,38 +187,42 @@ KeyValue VariedKey::RoundedAt(double place) const {
 }
 
 std::string VariedKey::ToText() const {
-  if (!listed()) return fmt::format("{}={}..{}{}", key.path, low, high, log ? kLog : "");
+  if (!listed()) return fmt::format("{}={}..{}{}", key.path, low, high, log ? kLog : normal ? kNormal : "");
   std::vector<std::string> texts;
-  for (const KeyValue& value : values) texts.push_back(ToSet(value));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    texts.push_back(ToSet(values[i]) + (weights.empty() ? "" : fmt::format(":{}", weights[i])));
   return fmt::format("{}={}", key.path, fmt::join(texts, "|"));
 }
 
 Result<std::vector<VariedKey>> ParseVariedKeys(const std::vector<std::string>& texts,
-                                               std::span<const Key> keys, const Experiment& experiment) {
+                                               std::span<const Key> keys, const Experiment& experiment,
+                                               Varied how) {
   std::vector<VariedKey> varied;
   std::set<std::string> known;
   for (const std::string& text : texts) {
+    const auto wrong = [&](const std::string& what) { return Reading{text, how}.Wrong(what); };
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-      return Wrong(text, "KEY=LOW..HIGH, KEY=LOW..HIGH:log or KEY=A|B is needed");
+      return wrong("KEY=LOW..HIGH, KEY=LOW..HIGH:log or KEY=A|B is needed");
     const std::string path = text.substr(0, equals);
     const std::string rest = text.substr(equals + 1);
     const auto key = std::ranges::find(keys, path, &Key::path);
-    if (key == keys.end()) return Wrong(text, UnknownName("key", path, keys));
-    if (const auto reason = WhyItCannotVary(*key)) return Wrong(text, fmt::format("{} {}", path, *reason));
-    if (!known.insert(path).second) return Wrong(text, path + " varies twice");
+    if (key == keys.end()) return wrong(UnknownName("key", path, keys));
+    if (const auto reason = WhyItCannotVary(*key)) return wrong(fmt::format("{} {}", path, *reason));
+    if (!known.insert(path).second) return wrong(path + " varies twice");
     VariedKey one{.key = *key, .step = OnGrid(path) ? experiment.genome.step : 0.0};
     const bool is_number = key->type == KeyType::kNumber || key->type == KeyType::kInteger;
     if (is_number && rest.find('|') == std::string::npos) {
       if (rest.find(kRange) == std::string::npos)
-        return Wrong(text, fmt::format("'{}' is no range, as in {}=0.5..2", rest, path));
-      TRY(one, RangeOf(text, std::move(one), rest));
+        return wrong(fmt::format("'{}' is no range, as in {}=0.5..2", rest, path));
+      TRY(one, RangeOf({text, how}, std::move(one), rest));
     } else {
-      TRY(one, ListOf(text, std::move(one), rest));
+      TRY(one, ListOf({text, how}, std::move(one), rest));
     }
     varied.push_back(std::move(one));
   }
-  if (varied.empty()) return InvalidInput("nothing varies: --vary KEY=LOW..HIGH is needed");
+  if (varied.empty() && how == Varied::kTried)
+    return InvalidInput("nothing varies: --vary KEY=LOW..HIGH is needed");
   return varied;
 }
 

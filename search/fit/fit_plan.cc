@@ -30,12 +30,6 @@ int FixedRuns(const FitCases& cases) {
   return given * ((kLeastRuns + given - 1) / given);
 }
 
-std::vector<std::string> WordsOf(const std::string& text) {
-  std::vector<std::string> words = Split(text, ' ');
-  std::erase(words, "");
-  return words;
-}
-
 int JudgedRuns(const FitPlan& plan, const FitCases& cases, int judged) {
   int least = 0;
   bool others = false;

@@ -20,7 +20,7 @@ class MarginCourse final : public SettingsCourse {
   const MarginStages& margin() const { return stages_; }
 
   const std::vector<VariedKey>& varied() const override { return varied_; }
-  const std::vector<KeyValue>& ValuesOf(std::size_t setting) const override { return values_[setting]; }
+  std::vector<KeyValue> ValuesOf(std::size_t setting) const override { return values_[setting]; }
   std::vector<SettingsRun> Next() override;
   void Tell(const SettingsRun& run, const RunOutcome& outcome) override;
   bool AtEnd() const override { return MarginStages(stages_).Next().empty(); }

@@ -73,7 +73,7 @@ class RepairCourse final : public SettingsCourse {
   RepairCourse(RepairPlan plan, std::string_view failing);
 
   const std::vector<VariedKey>& varied() const override { return plan_.varied; }
-  const std::vector<KeyValue>& ValuesOf(std::size_t setting) const override { return settings_[setting]; }
+  std::vector<KeyValue> ValuesOf(std::size_t setting) const override { return settings_[setting]; }
   std::vector<SettingsRun> Next() override;
   void Tell(const SettingsRun& run, const RunOutcome& outcome) override;
   bool AtEnd() const override { return stage_ == Stage::kProof; }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "search/experiment/varied_keys.h"
@@ -23,7 +24,11 @@ class SettingsCourse {
   virtual ~SettingsCourse() = default;
 
   virtual const std::vector<VariedKey>& varied() const = 0;
-  virtual const std::vector<KeyValue>& ValuesOf(std::size_t setting) const = 0;
+  virtual std::vector<KeyValue> ValuesOf(std::size_t setting) const = 0;
+  // Of its own, in place of the run's given case; nothing: that one.
+  virtual std::optional<sim::TestCase> CaseOf(std::size_t /*setting*/) const { return std::nullopt; }
+  // Whether a setting has one run, so that nothing of it has to be kept once it is told.
+  virtual bool Once() const { return false; }
   // Of the next stage, once all runs of the last are told; empty at the end.
   virtual std::vector<SettingsRun> Next() = 0;
   // In the order of Next.

@@ -15,7 +15,8 @@ EvaluationRequest SettingsSearch::RequestOf(const SettingsRun& run) {
   const auto [found, is_new] = copies_.try_emplace({run.setting, run.of_case});
   Individual& copy = found->second.individual;
   if (is_new) {
-    copy = MakeIndividual(++born_, setup_.cases[run.of_case]);
+    std::optional<sim::TestCase> own = course_.CaseOf(run.setting);
+    copy = MakeIndividual(++born_, own ? std::move(*own) : setup_.cases[run.of_case]);
     copy.birth_generation = static_cast<std::uint32_t>(course_.stages());
     copy.parents = {run.of_case + 1};
     newborns_.push_back(copy);
@@ -50,6 +51,10 @@ void SettingsSearch::Told(const EvaluationOutcome& outcome) {
   Record(outcome, copy.individual);
   --copy.asked;
   for (const RunOutcome& one : outcome.runs) course_.Tell(run, one);
+  if (course_.Once()) {
+    copies_.erase({run.setting, run.of_case});
+    settings_.erase(run.setting);
+  }
   if (asked_.empty()) ended_ = course_.AtEnd();
 }
 

@@ -1,5 +1,6 @@
 #include "sim/geometry/trigonometry.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -144,6 +145,30 @@ double Log(double x) {
   const double high = c[9] + c[10] * z;
   const double log_mantissa = 2.0 * s + (s * z) * (low + z4 * (middle + z4 * high));
   return exponent * kLn2A + (log_mantissa + exponent * kLn2B);
+}
+
+double NormalDeviate(double probability) {
+  constexpr std::array kA = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
+                             1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
+  constexpr std::array kB = {-5.447609879822406e+01, 1.615858368580409e+02,  -1.556989798598866e+02,
+                             6.680131188771972e+01,  -1.328068155288572e+01, 1.0};
+  constexpr std::array kC = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                             -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
+  constexpr std::array kD = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
+                             3.754408661907416e+00, 1.0};
+  constexpr double kTail = 0.02425;
+  const auto polynomial = [](const auto& coefficients, double x) {
+    double sum = 0.0;
+    for (const double one : coefficients) sum = sum * x + one;
+    return sum;
+  };
+  if (probability > 0.5) return -NormalDeviate(1.0 - probability);
+  if (probability < kTail) {
+    const double q = std::sqrt(-2.0 * Log(probability));
+    return polynomial(kC, q) / polynomial(kD, q);
+  }
+  const double q = probability - 0.5;
+  return polynomial(kA, q * q) * q / polynomial(kB, q * q);
 }
 
 double WrapAngleOutOfRange(double angle) {

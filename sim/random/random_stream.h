@@ -63,6 +63,7 @@ enum class SeedPurpose : std::uint32_t {
   kFit = 9,
   kMargin = 10,
   kRepair = 11,
+  kProbability = 12,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.

@@ -17,6 +17,9 @@ std::optional<SettingsAnswer> SettingsAnswerOf(const CampaignFacts& facts) {
   if (facts.repair)
     return SettingsAnswer{OutcomeOf(*facts.repair), TellRepair(*facts.repair, dir, "gauntlet"),
                           RepairFigures(facts)};
+  if (facts.probability)
+    return SettingsAnswer{
+        OutcomeOf(*facts.probability), TellProbability(*facts.probability, dir, "gauntlet"), {}};
   return std::nullopt;
 }
 

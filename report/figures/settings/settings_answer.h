@@ -1,4 +1,4 @@
-// What a search over settings has found: a fit, margins or a repair.
+// What a search over settings has found: a fit, margins, a repair or a failure probability.
 #pragma once
 
 #include <optional>
