@@ -39,6 +39,24 @@ std::string IntervalText(const ProbabilityEstimate& estimate) {
   return fmt::format("{} to {}", ShortText(estimate.interval.low), ShortText(estimate.interval.high));
 }
 
+// What happened in a failed run: by its metrics, by the requirement that was violated first, by its numbered
+// type; "mixed" where nothing of it is known.
+std::string GroupOf(const controllers::ScenarioInfo& scenario, const sim::TestCase& test_case,
+                    const RunOutcome& outcome) {
+  if (!outcome.completed()) return "ended without a result";
+  if (std::string mechanism = MechanismOf(scenario, test_case, outcome.metrics, {}); !mechanism.empty())
+    return mechanism;
+  const std::string begin = fmt::format("{}.", controllers::requirements::kViolatedAt);
+  const std::pair<std::string, double>* first = nullptr;
+  for (const auto& metric : outcome.metrics) {
+    const bool violated = metric.first.starts_with(begin) && metric.second >= 0.0;
+    if (violated && (first == nullptr || metric.second < first->second)) first = &metric;
+  }
+  if (first != nullptr) return "violates " + first->first.substr(begin.size());
+  const controllers::FailureType* type = scenario.failure_types.Find(outcome.failure_type);
+  return type == nullptr ? kMixed : type->name;
+}
+
 // The failed runs by the numbers of their samples.
 Result<std::map<std::uint64_t, LikelyFailure>> FailuresIn(const SearchPlan& plan, ResultStore& store,
                                                           SearchAlgorithm& search) {
@@ -53,8 +71,7 @@ Result<std::map<std::uint64_t, LikelyFailure>> FailuresIn(const SearchPlan& plan
     failure.robustness =
         controllers::ReportedValue(outcome.metrics, controllers::requirements::kRobustness).value_or(-1.0);
     TRY(const auto spec, proto::DecodeRunSpec(run.spec));
-    if (!crashed) failure.group = MechanismOf(scenario, spec.test_case, outcome.metrics, {});
-    if (failure.group.empty()) failure.group = crashed ? "ended without a result" : kMixed;
+    failure.group = GroupOf(scenario, spec.test_case, outcome);
     failures.emplace(run.individual - given, std::move(failure));
     return Ok{};
   };
@@ -155,9 +172,9 @@ std::string EndText(const FailureProbability& one) {
   return fmt::format("The runs ended before it was known within {:.0f} %.", 100.0 * spec.within);
 }
 
-// Half the width takes four times the runs.
-std::uint64_t RunsToHalve(const ProbabilityCourse& course) {
-  return 3 * course.runs();
+// Half the width takes four times the runs; twice, as long as none has failed.
+std::uint64_t RunsToHalve(const FailureProbability& one) {
+  return (one.estimate.estimate == 0.0 ? 1 : 3) * one.course().runs();
 }
 
 Table ConditionsTable(const FailureProbability& one) {
@@ -184,7 +201,8 @@ Table GroupTable(const FailureProbability& one) {
                {">failures", "failures"}});
   for (const FailureShare& share : one.groups) {
     table.AddRow({share.group, Cell(ShortText(share.probability.estimate), share.probability.estimate),
-                  Cell(IntervalText(share.probability), IntervalCell(share.probability.interval).value), CountCell(share.failures)});
+                  Cell(IntervalText(share.probability), IntervalCell(share.probability.interval).value),
+                  CountCell(share.failures)});
   }
   return table;
 }
@@ -246,8 +264,8 @@ std::string OutcomeOf(const FailureProbability& one) {
         "No repeat of splitting came to a failure; by {} that failed the failure probability is {} "
         "(95 %).",
         plain,
-        IntervalText(
-            {.interval = ConfidenceSequence(course.plain_failures(), course.plain_runs(), analysis::kConfidence)}));
+        IntervalText({.interval = ConfidenceSequence(course.plain_failures(), course.plain_runs(),
+                                                     analysis::kConfidence)}));
   if (!e.repeats.empty())
     return fmt::format("The failure probability is {} ({}, 95 %): the mean of {} repeats of splitting.",
                        ShortText(e.estimate), IntervalText(e), e.repeats.size());
@@ -262,8 +280,8 @@ std::vector<Section> TellProbability(const FailureProbability& one, const std::s
   const ProbabilityCourse& course = one.course();
   const std::string place = PastedPath(dir);
   Section main{.title = "Failure probability of " + one.experiment.controller};
-  main.lead = {fmt::format("{} over the conditions of {}; everything else is as in the experiment.",
-                           Counted(course.runs(), "run"), one.experiment.name)};
+  main.lead = {fmt::format("{} runs over the conditions of {}; everything else is as in the experiment.",
+                           FormatCount(course.runs()), one.experiment.name)};
   main.table = ConditionsTable(one);
   main.sentences = {OutcomeOf(one)};
   if (!one.finished) {
@@ -276,7 +294,7 @@ std::vector<Section> TellProbability(const FailureProbability& one, const std::s
                                        one.estimate.valid_at_any_time
                                            ? "The interval holds whenever one stops (a confidence sequence)."
                                            : "The interval is Student's, of the repeats' logarithm.",
-                                       Counted(RunsToHalve(course), "run")));
+                                       FormatCount(RunsToHalve(one)) + " runs"));
   if (course.without_result() > 0)
     main.sentences.push_back(fmt::format("{} ended without a result, and counted as failed.",
                                          Counted(course.without_result(), "run")));
@@ -316,7 +334,7 @@ std::string ProbabilityJson(const FailureProbability& one, const std::string& di
              {"runs", course.runs()},
              {"plain", {{"k", course.plain_failures()}, {"n", course.plain_runs()}}},
              {"repeats", one.estimate.repeats},
-             {"runs_to_halve", RunsToHalve(course)},
+             {"runs_to_halve", RunsToHalve(one)},
              {"without_result", course.without_result()},
              {"refused", course.refused()},
              {"outcome", OutcomeOf(one)}});

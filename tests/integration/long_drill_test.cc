@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "analysis/statistics/comparison.h"
+#include "analysis/statistics/proportions.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/crowd_drill.h"
 #include "tests/integration/durability_drill.h"
@@ -247,6 +249,30 @@ TEST(LongDrill, FourThousandConnectedWorkersAreAllLeasedAndNoneIsLost) {
   const auto status = nlohmann::json::parse(file, nullptr, false);
   EXPECT_EQ(status.value("workers", 0), kCrowd);
   EXPECT_EQ(status.value("workers_lost", -1), 0);
+}
+
+// What random cases say in 20,000 runs and what `probability` says in far fewer; with seeds of their own.
+TEST(LongDrill, ProbabilityAndRandomCasesAgree) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    const TemporaryDirectory scratch;
+    const std::string set = "seed=" + std::to_string(seed);
+    ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "20000", "--set", set, "--dir", scratch / "random",
+                        "--quiet"})
+                  .exit_code,
+              0);
+    const auto random = nlohmann::json::parse(Gauntlet({"show", scratch / "random", "--json"}).out);
+    const analysis::Interval counted =
+        analysis::WilsonInterval(random["total_failures"], 20'000, analysis::kConfidence);
+    const ProcessResult told = Gauntlet({"probability", "flocking", "--set", set, "--within", "0.1", "--dir",
+                                         scratch / "probability", "--json", "--quiet"});
+    ASSERT_EQ(told.exit_code, 0) << told.err;
+    const auto probability = nlohmann::json::parse(told.out);
+    fmt::print("seed {}: random {:.4f} to {:.4f}, probability {:.4f} to {:.4f} in {} runs\n", seed,
+               counted.low, counted.high, probability["interval"][0].get<double>(),
+               probability["interval"][1].get<double>(), probability["runs"].get<int>());
+    EXPECT_LE(probability["interval"][0], counted.high);
+    EXPECT_GE(probability["interval"][1], counted.low);
+  }
 }
 
 }  // namespace

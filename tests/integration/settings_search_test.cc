@@ -1,5 +1,6 @@
 // A search over settings has the same answer for any number of workers, and after its processes were killed.
-// Covers: cli/commands/margin_command.cc, cli/commands/repair_command.cc
+// Covers: cli/commands/margin_command.cc, cli/commands/repair_command.cc,
+// cli/commands/probability_command.cc
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -73,7 +74,10 @@ INSTANTIATE_TEST_SUITE_P(
                                      "random:30", "--budget", "400"}},
                     SettingsCommand{"repair",
                                     {"--from", "FAILING", "--parameters", "turning_speed_factor,turn_rate",
-                                     "--budget", "150", "--random", "20", "--fresh", "40"}}),
+                                     "--budget", "150", "--random", "20", "--fresh", "40"}},
+                    SettingsCommand{"probability",
+                                    {"--vary", "noise.omnidirectional_camera.drop=0..0.5", "--budget", "400",
+                                     "--within", "0"}}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

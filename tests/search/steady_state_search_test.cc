@@ -185,7 +185,7 @@ TEST(SteadyStateSearchTest, ImpossibleSettingsAreNamed) {
   EXPECT_EQ(RefusalOfSettings({"search.algorithm=steady"}),
             "--set search.algorithm=steady: search.algorithm = \"steady\" is unknown, allowed genetic, "
             "steady-state, random, archive, random-deletion, cases, resimulation, confirmation, "
-            "minimisation, blame, check, fit, margin, repair, stream");
+            "minimisation, blame, check, fit, margin, repair, probability, stream");
   EXPECT_EQ(RefusalOfSettings({"search.mode=steady-state"}),
             "--set search.mode=steady-state: unknown key 'search.mode'; write search.algorithm = "
             "\"steady-state\" or \"genetic\"");

@@ -52,13 +52,11 @@ inline std::unique_ptr<ProbabilityCourse> ToyCourse(const SearchSetup& setup) {
   return std::make_unique<ProbabilityCourse>(setup, std::move(conditions), controllers::kTotalFailure);
 }
 
-// Stage by stage to its end; `look` after each.
-template <typename Look>
-void DriveToy(ProbabilityCourse& course, const ToySwarm& swarm, std::uint64_t seed, const Look& look) {
+// Stage by stage to its end.
+inline void DriveToy(ProbabilityCourse& course, const ToySwarm& swarm, std::uint64_t seed) {
   while (!course.AtEnd()) {
     for (const SettingsRun& run : course.Next())
       course.Tell(run, swarm.Run(course.SampleOf(run.setting + 1), seed * 1'000'003 + run.setting));
-    look();
   }
 }
 
