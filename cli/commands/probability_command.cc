@@ -102,9 +102,9 @@ void AddProbability(CommandParser& parser) {
   command.footer(
       R"(Draws arenas, what [conditions] of the experiment states, and a seed for each run, and counts failures. The
 interval holds at every moment at once, so that it may end as soon as it is narrow enough, or surely on one side
-of P. Where fewer than 20 of the first 1000 runs fail and the experiment has [requirements], adaptive multilevel
-splitting goes on from those that came nearest to failing; where it is not the conditions but the seed that
-decides, this does not pay, and it says so and samples on.
+of P. Where fewer than ten runs of a tenth of the budget fail and the experiment has [requirements], adaptive
+multilevel splitting goes on from those that came nearest to failing; where it is not the conditions but the seed
+that decides, this does not pay, and it says so and samples on.
 
 It also tells how the probability falls on ways of failing, and the likeliest failures, which confirm and minimise
 take. In place of EXPERIMENT may stand the directory of such a campaign, to tell it again.

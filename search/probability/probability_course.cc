@@ -18,7 +18,9 @@ constexpr double kDeepest = 11.5;  // minus the logarithm of the rarest failure 
 constexpr std::uint64_t kLeastStage = 100;
 constexpr std::uint64_t kMostStage = 5000;
 
-std::uint64_t FirstRuns(std::uint64_t budget) {
+constexpr std::size_t kAgain = 100;  // runs of what nearly failed
+
+std::uint64_t FirstStage(std::uint64_t budget) {
   return std::clamp(budget / 10, kLeastStage, ProbabilityCourse::kFirstRuns);
 }
 
@@ -39,8 +41,8 @@ ProbabilityEstimate EstimateOfRepeats(std::vector<double> repeats, double confid
   const auto count = static_cast<double>(repeats.size());
   const double mean = std::accumulate(repeats.begin(), repeats.end(), 0.0) / count;
   if (mean == 0.0) return {.repeats = std::move(repeats)};
-  // The spread of the logarithms, which does not follow the mean as that of the repeats does; but of what is 0
-  // there is none.
+  // The spread of the logarithms, which does not follow the mean as that of the repeats does; but of what is
+  // 0 there is none.
   const bool logs = std::ranges::count(repeats, 0.0) == 0;
   const auto scaled = [&](double one) { return logs ? sim::Log(one / mean) : one / mean - 1.0; };
   double sum = 0.0;
@@ -89,14 +91,15 @@ std::uint64_t ProbabilityCourse::Ask(std::optional<Sample> sample, Asked asked) 
 
 void ProbabilityCourse::AskPlain() {
   const std::uint64_t wanted = reason_ == SamplingReason::kFirst
-                                   ? FirstRuns(budget_)
+                                   ? FirstStage(budget_)
                                    : std::clamp(plain_ / 10, kLeastStage, kMostStage);
   for (std::uint64_t i = std::min(wanted, left()); i > 0; --i) Ask(std::nullopt, {});
 }
 
 void ProbabilityCourse::AskAgain() {
   std::ranges::stable_sort(scores_);
-  for (std::size_t i = 0; i < scores_.size() / 10 && left() > 0; ++i) Ask(SampleOf(scores_[i].second), {});
+  for (std::size_t i = 0; i < std::min(kAgain, scores_.size() / 10) && left() > 0; ++i)
+    Ask(SampleOf(scores_[i].second), {});
 }
 
 void ProbabilityCourse::AskSplitting() {
@@ -158,7 +161,7 @@ void ProbabilityCourse::ChooseMethod() {
               : plain_failed_.size() >= kFrequent ? SamplingReason::kFrequent
               : !scored_                          ? SamplingReason::kNoScore
                                                   : SamplingReason::kFirst;
-    if (reason_ == SamplingReason::kFirst) phase_ = Phase::kAgain;
+    if (reason_ == SamplingReason::kFirst && 10 * plain_ >= budget_) phase_ = Phase::kAgain;
     return;
   }
   std::vector<double> first;
@@ -175,24 +178,32 @@ void ProbabilityCourse::ChooseMethod() {
   scores_.clear();
 }
 
-void ProbabilityCourse::StageTold() {
-  if (phase_ == Phase::kSplitting) {
-    const bool finished = std::ranges::all_of(repeats_, &Splitting::AtEnd);
-    if (finished) {
-      // Another round where the runs reach for one as long as those before it were.
-      const std::uint64_t rounds = repeats_.size() / kRepeats;
-      const std::uint64_t each = (asked_ - plain_ - again_.size()) / rounds;
-      finished_repeats_ = repeats_.size();
-      end_ = EndOf(Estimate(kConfidence));
-      if (end_ == ProbabilityEnd::kOpen && left() >= each)
-        BeginSplitting();
-      else if (end_ == ProbabilityEnd::kOpen)
-        end_ = ProbabilityEnd::kBudget;
-    } else if (left() == 0) {
-      end_ = ProbabilityEnd::kBudget;
-    }
-    return;
+void ProbabilityCourse::RoundOfSplittingTold() {
+  const std::uint64_t split = asked_ - plain_ - again_.size();
+  const std::uint64_t rounds = repeats_.size() / kRepeats;
+  finished_repeats_ = repeats_.size();
+  const ProbabilityEstimate known = Estimate(kConfidence);
+  end_ = EndOf(known);
+  if (AtEnd()) return;
+  // As wide as it would be of as many plain samples.
+  const double plain_reach =
+      StudentQuantile(0.5 + kConfidence / 2.0, 1000) * std::sqrt(known.estimate / static_cast<double>(split));
+  if (rounds == 1 && (known.interval.high - known.interval.low) / 2.0 > plain_reach) {
+    reason_ = SamplingReason::kDearer;
+    phase_ = Phase::kPlain;
+    finished_repeats_ = 0;
+    repeats_.clear();
+    if (left() == 0) end_ = ProbabilityEnd::kBudget;
+  } else if (left() >= split / rounds) {
+    BeginSplitting();
+  } else {
+    end_ = ProbabilityEnd::kBudget;
   }
+}
+
+void ProbabilityCourse::StageTold() {
+  if (phase_ == Phase::kSplitting && std::ranges::all_of(repeats_, &Splitting::AtEnd))
+    return RoundOfSplittingTold();
   if (phase_ == Phase::kPlain) end_ = EndOf(Estimate(kConfidence));
   if (end_ == ProbabilityEnd::kOpen && left() == 0) end_ = ProbabilityEnd::kBudget;
   if (reason_ == SamplingReason::kFirst && end_ == ProbabilityEnd::kOpen) ChooseMethod();

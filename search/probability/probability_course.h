@@ -25,6 +25,7 @@ enum class SamplingReason {
   kSeedDecides,  // what nearly failed fails no more often than others when its seed is drawn anew
   kFewRuns,      // too few are left for splitting
   kSplitting,    // splitting
+  kDearer,       // a first round of splitting took more runs than plain ones would have
 };
 
 enum class ProbabilityEnd { kOpen, kNarrow, kBelow, kAbove, kBudget };
@@ -48,10 +49,11 @@ ProbabilityEstimate EstimateOfRepeats(std::vector<double> repeats, double confid
 // Pure: the same runs for the same outcomes.
 class ProbabilityCourse final : public SettingsCourse {
  public:
-  static constexpr std::uint64_t kFirstRuns = 1000;  // plain ones; a tenth of the budget, if that is less
-  static constexpr std::uint64_t kFrequent = 20;     // failures of these
-  // What nearly failed, a tenth of the first runs, is run again with other seeds; splitting pays where the
-  // probability that such a run comes nearer to failing than any other is at least so high.
+  // Plain samples come first; those of the first tenth of the budget decide what follows.
+  static constexpr std::uint64_t kFirstRuns = 1000;  // of a stage; a tenth of the budget, if that is less
+  static constexpr std::uint64_t kFrequent = 10;     // failures of these
+  // What nearly failed, the hundred lowest of them, is run again with other seeds; splitting is tried where
+  // the probability that such a run comes nearer to failing than any other is at least so high.
   static constexpr double kLeastPull = 0.7;
   static constexpr std::size_t kRepeats = 10;         // of splitting, at once
   static constexpr std::size_t kMostParticles = 200;  // of each
@@ -102,6 +104,7 @@ class ProbabilityCourse final : public SettingsCourse {
   void BeginSplitting();
   void StageTold();
   void ChooseMethod();
+  void RoundOfSplittingTold();
   ProbabilityEnd EndOf(const ProbabilityEstimate& estimate) const;
   std::uint64_t left() const { return budget_ - asked_; }
 

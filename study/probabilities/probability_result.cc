@@ -148,6 +148,12 @@ std::string ReasonText(const ProbabilityCourse& course) {
           "Adaptive multilevel splitting by robustness: {} of {} plain samples failed, and those that came "
           "nearest came nearer than others in {:.0f} % of the comparisons when their seeds were drawn anew.",
           course.plain_failures(), FormatCount(course.plain_runs()), 100.0 * course.pull());
+    case SamplingReason::kDearer:
+      return fmt::format(
+          "Plain samples: a first round of splitting, {} repeats, left a wider interval than as many plain "
+          "samples "
+          "would have.",
+          ProbabilityCourse::kRepeats);
   }
   return "";
 }
@@ -224,8 +230,8 @@ const char* EndName(ProbabilityEnd end) {
   return kNames[static_cast<int>(end)];
 }
 const char* ReasonName(SamplingReason reason) {
-  constexpr const char* kNames[] = {"first",        "frequent", "asked",    "no-requirements",
-                                    "seed-decides", "few-runs", "splitting"};
+  constexpr const char* kNames[] = {"first",        "frequent", "asked",     "no-requirements",
+                                    "seed-decides", "few-runs", "splitting", "dearer"};
   return kNames[static_cast<int>(reason)];
 }
 

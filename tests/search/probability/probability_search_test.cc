@@ -60,7 +60,7 @@ TEST(ProbabilityCourseTest, ItsIntervalsCoverWhatIsRare) {
 
 TEST(ProbabilityCourseTest, SamplesPlainlyWhereSplittingDoesNotPayAndSaysWhy) {
   EXPECT_EQ(Driven({3.090232, 1.0}, 1, 5000)->reason(), SamplingReason::kSeedDecides);
-  EXPECT_EQ(Driven(kThousandth, 1, 5000)->reason(), SamplingReason::kFewRuns);
+  EXPECT_EQ(Driven(kThousandth, 1, 3000)->reason(), SamplingReason::kFewRuns);
   EXPECT_EQ(Driven(kThousandth, 1, 5000, {"probability.plain=true"})->reason(), SamplingReason::kAsked);
   EXPECT_EQ(Driven(kThousandth, 1, 5000, {"requirements.near="})->reason(), SamplingReason::kNoScore);
   const auto asked = Driven(kThousandth, 1, 5000, {"probability.plain=true"});
