@@ -35,7 +35,8 @@ Result<SearchPlan> PlanProbability(CommandContext& context, const ProbabilityOpt
       return InvalidInput("--vary " + text +
                           ": KEY=LOW..HIGH, KEY=LOW..HIGH:log, KEY=LOW..HIGH:normal or "
                           "KEY=A:2|B:1 is needed");
-    extra.push_back({"--vary", "conditions." + text.substr(0, equals), text.substr(equals + 1)});
+    extra.push_back({"--vary " + text.substr(0, equals + 1), "conditions." + text.substr(0, equals),
+                     text.substr(equals + 1)});
   }
   if (!options.below.empty()) {
     if (const auto p = ParseNumber<double>(options.below); p && (*p <= 0.0 || *p >= 1.0))

@@ -1,5 +1,6 @@
 #include "search/probability/confidence_sequence.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/geometry/trigonometry.h"
@@ -7,7 +8,9 @@
 namespace gauntlet {
 namespace {
 
-constexpr double kSpread = 2.0;  // of the mixture; chosen so that no interval of 1e5 trials is twice as wide
+constexpr double kSpread =
+    3.0;  // of the near alternatives; chosen so that no interval of 1e5 trials is twice as wide
+constexpr double kNear = 0.9;       // their share
 constexpr double kFarthest = 30.0;  // log odds between which ends are looked for
 
 // The logarithm of the gamma function (Stirling's series), to 1e-10, by operations that are the same on every
@@ -21,13 +24,20 @@ double LogGamma(double x) {
   return (x - 0.5) * sim::Log(x) - x + kHalfLogTwoPi + series - shift;
 }
 
+// The logarithm of the mean likelihood over alternatives with a beta distribution.
+double LogLikelihood(double a, double b, double hits, double misses) {
+  return LogGamma(a + hits) - LogGamma(a) + LogGamma(b + misses) - LogGamma(b) -
+         LogGamma(a + b + hits + misses) + LogGamma(a + b);
+}
+
 // The logarithm of the mixture against p.
 double Evidence(double hits, double trials, double p) {
-  const double a = kSpread / (1.0 - p);
-  const double b = kSpread / p;
   const double misses = trials - hits;
-  return LogGamma(a + hits) - LogGamma(a) + LogGamma(b + misses) - LogGamma(b) - LogGamma(a + b + trials) +
-         LogGamma(a + b) - hits * sim::Log(p) - misses * sim::Log(1.0 - p);
+  const double of_p = hits * sim::Log(p) + misses * sim::Log(1.0 - p);
+  const double near = LogLikelihood(kSpread / (1.0 - p), kSpread / p, hits, misses) - of_p;
+  const double any = LogLikelihood(0.5, 0.5, hits, misses) - of_p;
+  const double more = std::max(near, any);
+  return more + sim::Log(kNear * sim::Exp(near - more) + (1.0 - kNear) * sim::Exp(any - more));
 }
 
 double ProbabilityAt(double log_odds) {

@@ -28,6 +28,7 @@ namespace gauntlet {
 namespace {
 
 constexpr std::size_t kMostTold = 5;  // failures
+constexpr std::size_t kMostGroups = 10;
 constexpr const char* kMixed = "mixed";
 
 using Json = nlohmann::ordered_json;
@@ -259,7 +260,7 @@ std::string OutcomeOf(const FailureProbability& one) {
   const ProbabilityCourse& course = one.course();
   const ProbabilityEstimate& e = one.estimate;
   const std::string plain = fmt::format("{} of {}", FormatCount(course.plain_failures()),
-                                        Counted(course.plain_runs(), "plain sample"));
+                                        FormatCount(course.plain_runs()) + " plain samples");
   if (const auto reached = course.Reached(); reached && one.finished)
     return fmt::format(
         "The failure probability is hardly above {}: the runs ended while splitting was there. By {} "
@@ -309,7 +310,10 @@ std::vector<Section> TellProbability(const FailureProbability& one, const std::s
                                          Counted(course.refused(), "sample")));
   std::vector<Section> sections = {std::move(main)};
   if (one.likeliest.empty()) return sections;
-  sections.push_back({.title = "What it falls on", .table = GroupTable(one)});
+  Section groups{.title = "What it falls on", .table = GroupTable(one).First(kMostGroups)};
+  if (one.groups.size() > kMostGroups)
+    groups.sentences = {fmt::format("{} rarer ones: --json has them.", one.groups.size() - kMostGroups)};
+  sections.push_back(std::move(groups));
   Section likeliest{.title = "Likeliest failures"};
   likeliest.table = LikeliestTable(one);
   likeliest.sentences = {
@@ -323,7 +327,9 @@ std::vector<Section> TellProbability(const FailureProbability& one, const std::s
       {fmt::format("{} confirm {}{}", program, place, runs), "how often each fails, with fresh seeds"},
       {fmt::format("{} minimise {} {}", program, place, proto::RunText(one.likeliest.front().run)),
        "what of it is needed"},
-      {fmt::format("{} corpus {} -o corpus", program, place), "keep those that were confirmed"}};
+      {fmt::format("{} corpus add {} {} --to corpus", program, place,
+                   proto::RunText(one.likeliest.front().run)),
+       "keep it, once it is confirmed"}};
   sections.push_back(std::move(likeliest));
   return sections;
 }

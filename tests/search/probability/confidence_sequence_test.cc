@@ -48,7 +48,10 @@ TEST(ConfidenceSequenceTest, KnowsItsEnds) {
   const analysis::Interval none = ConfidenceSequence(0, 1000, 0.95);
   EXPECT_EQ(none.low, 0.0);
   EXPECT_GT(none.high, 3.0 / 1000);  // what is sure of a fixed number (rule of three)
-  EXPECT_LT(none.high, 6.0 / 1000);
+  EXPECT_LT(none.high, 7.4 / 1000);  // twice the two-sided one
+  const analysis::Interval one = ConfidenceSequence(1, 1000, 0.95);
+  EXPECT_GT(one.low, 1e-8);
+  EXPECT_LT(one.low, 25e-6);  // what is sure of a fixed number: 1 - .975^(1/1000)
   const analysis::Interval all = ConfidenceSequence(1000, 1000, 0.95);
   EXPECT_EQ(all.high, 1.0);
   EXPECT_NEAR(all.low, 1.0 - none.high, 1e-9);

@@ -34,7 +34,7 @@ TEST(ProbabilityOutcomeTest, SaysHowProbableAndHowThatIsKnown) {
                             "[0-9]+ of 1,?000 plain samples failed\\."));
   EXPECT_THAT(OutcomeOf(Found({3.719016})), HasSubstr("the mean of 10 repeats of splitting."));
   EXPECT_THAT(OutcomeOf(Found({20.0}, {"probability.below=0.01"})),
-              HasSubstr("The failure probability is at most 0.00569 (0 to 0.00569, 95 %): 0 of"));
+              HasSubstr("The failure probability is at most 0.00649 (0 to 0.00649, 95 %): 0 of"));
 }
 
 TEST(TellProbabilityTest, SaysHowItEndedAndWhatMoreRunsWouldGive) {
