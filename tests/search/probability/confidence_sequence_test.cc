@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "analysis/statistics/proportions.h"
-#include "sim/geometry/trigonometry.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet {
@@ -61,12 +60,6 @@ TEST(StudentQuantileTest, IsNearTheTable) {
   EXPECT_NEAR(StudentQuantile(0.975, 9), 2.262, 0.003);
   EXPECT_NEAR(StudentQuantile(0.975, 29), 2.045, 0.001);
   EXPECT_NEAR(StudentQuantile(0.995, 19), 2.861, 0.003);
-}
-
-TEST(NormalDeviateTest, IsNearTheTable) {
-  EXPECT_NEAR(sim::NormalDeviate(0.975), 1.959963985, 1e-8);
-  EXPECT_NEAR(sim::NormalDeviate(0.001), -3.090232306, 1e-8);
-  EXPECT_EQ(sim::NormalDeviate(0.5), 0.0);
 }
 
 }  // namespace

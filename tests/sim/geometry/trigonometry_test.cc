@@ -214,5 +214,11 @@ TEST(TrigonometryTest, BitsNeverChange) {
   expect_bits(WrapAngle(-1000.0), 0xbfef27354d3fef61, "WrapAngle(-1000)");
 }
 
+TEST(NormalDeviateTest, IsNearTheTable) {
+  EXPECT_NEAR(NormalDeviate(0.975), 1.959963985, 1e-8);
+  EXPECT_NEAR(NormalDeviate(0.001), -3.090232306, 1e-8);
+  EXPECT_EQ(NormalDeviate(0.5), 0.0);
+}
+
 }  // namespace
 }  // namespace gauntlet::sim
