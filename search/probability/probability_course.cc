@@ -17,7 +17,6 @@ constexpr double kConfidence = 0.95;
 constexpr double kDeepest = 11.5;  // minus the logarithm of the rarest failure that particles are planned for
 constexpr std::uint64_t kLeastStage = 100;
 constexpr std::uint64_t kMostStage = 5000;
-
 constexpr std::size_t kAgain = 100;  // runs of what nearly failed
 
 std::uint64_t FirstStage(std::uint64_t budget) {
@@ -140,8 +139,9 @@ void ProbabilityCourse::Tell(const SettingsRun& /*run*/, const RunOutcome& outco
   const bool failed = refused ? false : !outcome.completed() || Fails(outcome, failing_);
   if (refused) ++refused_;
   if (!refused && !outcome.completed()) ++without_result_;
-  const double score = controllers::ReportedValue(outcome.metrics, controllers::requirements::kRobustness)
-                           .value_or(std::numeric_limits<double>::infinity());
+  double score = controllers::ReportedValue(outcome.metrics, controllers::requirements::kRobustness)
+                     .value_or(std::numeric_limits<double>::infinity());
+  if (std::isnan(score)) score = std::numeric_limits<double>::infinity();
   const double with_failed = failed ? -std::numeric_limits<double>::infinity() : score;
   if (phase_ == Phase::kPlain) {
     ++plain_;

@@ -1,7 +1,6 @@
 #include "search/probability/splitting.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/check.h"
@@ -34,8 +33,7 @@ std::vector<SplittingRun> Splitting::Next() {
 }
 
 void Splitting::Tell(const SplittingRun& run, std::uint64_t sample, double score, bool failed) {
-  // No robustness is infinite; of a run without a result that did not fail it is the farthest.
-  const double held = failed ? kFailed : std::isnan(score) ? std::numeric_limits<double>::infinity() : score;
+  const double held = failed ? kFailed : score;
   Particle& particle = particles_[run.particle];
   if (!begun_ || held < level_) particle = {sample, held};
   if (++told_ < moving_.size()) return;

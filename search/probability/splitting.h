@@ -35,8 +35,8 @@ class Splitting {
 
   // The next, once all of the last are told; empty at the end.
   std::vector<SplittingRun> Next();
-  // Of what Next gave, in its order. `sample`: the number it has from now on. `score`: that of a run that
-  // failed is not looked at.
+  // Of what Next gave, in its order. `sample`: the number it has from now on. `score`: no NaN; that of
+  // a run that failed is not looked at.
   void Tell(const SplittingRun& run, std::uint64_t sample, double score, bool failed);
 
   bool AtEnd() const { return estimate_.has_value(); }

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "search/experiment/genome_ranges.h"
@@ -53,6 +54,39 @@ RC_GTEST_PROP(GenomeGeneratorTest, EveryCaseIsValidInRangeAndOnTheGrid, ()) {
     }
     RC_ASSERT(gene.orientation_deg == std::floor(gene.orientation_deg));
   }
+}
+
+RC_GTEST_PROP(GenomeGeneratorTest, ACaseOfDrawsIsTheirFirstGenesWhereTheseFit, ()) {
+  const SearchSetup setup = ToySetup();
+  const GenomeGenerator generator = MakeGenerator(setup);
+  sim::RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), sim::StreamPurpose::kTest);
+  std::vector<GeneDraw> draws;
+  for (int i = 0; i < generator.spec().genes; ++i) draws.push_back(generator.DrawGene(random));
+  const sim::Genome genome = generator.CaseOf(draws).value().obstacles;
+  RC_ASSERT(generator.Valid(genome));
+  RC_ASSERT(generator.CaseOf(draws).value().obstacles == genome);
+  sim::Genome first;
+  for (const GeneDraw& draw : draws) first.push_back(draw.first);
+  RC_ASSERT(!generator.Valid(first) || first == genome);
+}
+
+TEST(GenomeGeneratorTest, StepsOfAGeneStayInRangeAndAreAsProbableBackwards) {
+  GenomeSpec spec;
+  spec.position_min = -0.2;
+  spec.position_max = 0.2;
+  const GenomeGenerator generator = Generator(spec);
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  std::map<std::pair<double, double>, int> steps;
+  sim::ObstacleGene gene = generator.RandomGene(random);
+  for (int i = 0; i < 20'000; ++i) {
+    const sim::ObstacleGene next = generator.NearGene(gene, 0.25, random);
+    ASSERT_TRUE(InRanges({next}, spec));
+    ++steps[{gene.x, next.x}];
+    gene = next;
+  }
+  for (const auto& [step, count] : steps)
+    EXPECT_NEAR(count, (steps[{step.second, step.first}]), 6.0 * std::sqrt(count));
+  EXPECT_GT(steps.size(), 10U);
 }
 
 TEST(GenomeGeneratorTest, EveryGridPointOfEveryRangeIsDrawn) {

@@ -43,6 +43,24 @@ TEST(VariedKeysTest, OnALogarithmicScaleTheMiddleIsTheGeometricMean) {
   EXPECT_EQ(key.ToText(), "controller_parameters.bird_speed=0.01..0.16:log");
 }
 
+TEST(VariedKeysTest, WhatIsDrawnMayBeNormalAndHaveWeights) {
+  const Experiment experiment = Flocking();
+  const auto drawn = [&](const std::string& text) {
+    return ParseVariedKeys({text}, AllKeysOf(experiment), experiment, Varied::kDrawn);
+  };
+  const VariedKey normal = drawn("controller_parameters.bird_speed=0.1..0.14:normal").value().front();
+  EXPECT_NEAR(NumberOf(normal.ValueAt(0.5)), 0.12, 1e-12);
+  EXPECT_NEAR(NumberOf(normal.ValueAt(1.0)), 0.14, 1e-8);
+  // A quarter of all lies above .639 standard deviations when two are the ends.
+  EXPECT_NEAR(NumberOf(normal.ValueAt(0.75)), 0.12 + 0.01 * 0.639, 1e-4);
+  EXPECT_EQ(normal.ToText(), "controller_parameters.bird_speed=0.1..0.14:normal");
+  const VariedKey weighted = drawn("physics=impulse:3|box2d").value().front();
+  EXPECT_EQ(weighted.ValueAt(0.74), KeyValue(std::string("impulse")));
+  EXPECT_EQ(weighted.ValueAt(0.76), KeyValue(std::string("box2d")));
+  EXPECT_EQ(weighted.ToText(), "physics=impulse:0.75|box2d:0.25");
+  EXPECT_NE(ErrorOfKeys({"controller_parameters.bird_speed=0.1..0.14:normal"}), "") << "tried, not drawn";
+}
+
 TEST(VariedKeysTest, EachWholeNumberHasAsMuchRoom) {
   const VariedKey key = One("genome.genes=2..5");
   std::map<std::int64_t, int> counts;
