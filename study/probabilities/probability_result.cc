@@ -176,6 +176,7 @@ std::string EndText(const FailureProbability& one) {
   if (spec.below > 0.0)
     return fmt::format("Whether it is below {} is not decided by {}.", spec.below,
                        Counted(one.course().runs(), "run"));
+  if (spec.within == 0.0) return "All runs that were asked for were made.";
   return fmt::format("The runs ended before it was known within {:.0f} %.", 100.0 * spec.within);
 }
 
