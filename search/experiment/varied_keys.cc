@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -119,7 +120,6 @@ Result<VariedKey> ListOf(const Reading& reading, VariedKey varied, const std::st
   if (sum <= 0.0) return wrong("the weights sum to nothing");
   const bool equal = std::ranges::count(varied.weights, varied.weights.front()) == std::ssize(varied.weights);
   if (equal) varied.weights.clear();
-  for (double& weight : varied.weights) weight /= sum;
   return varied;
 }
 
@@ -129,9 +129,9 @@ std::size_t EntryAt(const VariedKey& varied, double place) {
     const auto index = static_cast<std::size_t>(place * static_cast<double>(varied.values.size()));
     return std::min(index, varied.values.size() - 1);
   }
+  double left = place * std::accumulate(varied.weights.begin(), varied.weights.end(), 0.0);
   std::size_t entry = 0;
-  for (double end = varied.weights[0]; place >= end && entry + 1 < varied.values.size();)
-    end += varied.weights[++entry];
+  while (left >= varied.weights[entry] && entry + 1 < varied.values.size()) left -= varied.weights[entry++];
   while (varied.weights[entry] == 0.0) --entry;  // only rounding leads behind the last that has a weight
   return entry;
 }

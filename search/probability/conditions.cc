@@ -126,9 +126,11 @@ std::vector<KeyValue> Conditions::ValuesOf(const Sample& sample) const {
 
 sim::TestCase Conditions::CaseOf(const Sample& sample) const {
   if (!generates_) return cases_[sample.of_case];
-  const Result<sim::TestCase> drawn = generator_.CaseOf(sample.genes);
-  // Make has seen that the ranges leave room; a hundred starts without a case are beyond chance.
-  return drawn ? *drawn : cases_.front();
+  Result<sim::TestCase> drawn = generator_.CaseOf(sample.genes);
+  // Make has seen that the ranges leave room.
+  sim::RandomStream again(sample.genes.front().others, sim::StreamPurpose::kGenome, /*a=*/2);
+  while (!drawn) drawn = generator_.RandomTestCase(again);
+  return *std::move(drawn);
 }
 
 double Conditions::DensityOf(const Sample& sample) const {

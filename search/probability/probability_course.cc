@@ -79,13 +79,10 @@ std::optional<sim::TestCase> ProbabilityCourse::CaseOf(std::size_t setting) cons
   return conditions_.CaseOf(SampleOf(setting + 1));
 }
 
-std::uint64_t ProbabilityCourse::Ask(std::optional<Sample> sample, Asked asked) {
+void ProbabilityCourse::Ask(std::optional<Sample> sample, Asked asked) {
   asked.sample = ++asked_;
-  const std::size_t of_case = sample ? sample->of_case : SampleOf(asked_).of_case;
   if (sample) samples_.emplace(asked_, std::move(*sample));
-  next_.push_back({asked_ - 1, of_case});
   stage_.push_back(asked);
-  return asked_;
 }
 
 void ProbabilityCourse::AskPlain() {
@@ -122,7 +119,6 @@ void ProbabilityCourse::BeginSplitting() {
 }
 
 std::vector<SettingsRun> ProbabilityCourse::Next() {
-  next_.clear();
   stage_.clear();
   told_ = 0;
   if (AtEnd()) return {};
@@ -130,7 +126,9 @@ std::vector<SettingsRun> ProbabilityCourse::Next() {
   if (phase_ == Phase::kPlain) AskPlain();
   if (phase_ == Phase::kAgain) AskAgain();
   if (phase_ == Phase::kSplitting) AskSplitting();
-  return next_;
+  std::vector<SettingsRun> runs;
+  for (const Asked& asked : stage_) runs.push_back({asked.sample - 1, SampleOf(asked.sample).of_case});
+  return runs;
 }
 
 void ProbabilityCourse::Tell(const SettingsRun& /*run*/, const RunOutcome& outcome) {

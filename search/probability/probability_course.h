@@ -97,7 +97,7 @@ class ProbabilityCourse final : public SettingsCourse {
     SplittingRun run;
   };
 
-  std::uint64_t Ask(std::optional<Sample> sample, Asked asked);
+  void Ask(std::optional<Sample> sample, Asked asked);
   void AskPlain();
   void AskAgain();
   void AskSplitting();
@@ -119,9 +119,8 @@ class ProbabilityCourse final : public SettingsCourse {
   ProbabilityEnd end_ = ProbabilityEnd::kOpen;
   std::size_t stages_ = 0;
   std::uint64_t asked_ = 0;
-  std::size_t told_ = 0;      // of the stage
-  std::vector<Asked> stage_;  // in the order of Next
-  std::vector<SettingsRun> next_;
+  std::size_t told_ = 0;                     // of the stage
+  std::vector<Asked> stage_;                 // in the order of Next
   std::map<std::uint64_t, Sample> samples_;  // those that are no plain ones
   std::uint64_t plain_ = 0;
   std::vector<std::uint64_t> plain_failed_;

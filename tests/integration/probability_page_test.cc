@@ -21,7 +21,7 @@ TEST(ProbabilityPageTest, ItsConditionsAreOnesAndAreWrittenBackAsTheyMean) {
   ASSERT_TRUE(experiment) << experiment.error().message;
   const std::string written = WriteExperiment(*experiment, {}, BuiltInCatalogue());
   EXPECT_THAT(written, testing::HasSubstr("[conditions]\n"));
-  EXPECT_THAT(written, testing::HasSubstr("physics = \"impulse:0.75|box2d:0.25\"\n"));
+  EXPECT_THAT(written, testing::HasSubstr("physics = \"impulse:3|box2d:1\"\n"));
   const auto again = ParseExperiment(written, "written.toml", {}, BuiltInCatalogue());
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(again->conditions, experiment->conditions);

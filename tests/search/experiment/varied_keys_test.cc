@@ -57,7 +57,10 @@ TEST(VariedKeysTest, WhatIsDrawnMayBeNormalAndHaveWeights) {
   const VariedKey weighted = drawn("physics=impulse:3|box2d").value().front();
   EXPECT_EQ(weighted.ValueAt(0.74), KeyValue(std::string("impulse")));
   EXPECT_EQ(weighted.ValueAt(0.76), KeyValue(std::string("box2d")));
-  EXPECT_EQ(weighted.ToText(), "physics=impulse:0.75|box2d:0.25");
+  EXPECT_EQ(weighted.ToText(), "physics=impulse:3|box2d:1");
+  // A campaign reads again what it has written.
+  const std::string sevenths = drawn("physics=impulse:0.1|box2d:0.6").value().front().ToText();
+  EXPECT_EQ(drawn(sevenths).value().front().ToText(), sevenths);
   EXPECT_NE(ErrorOfKeys({"controller_parameters.bird_speed=0.1..0.14:normal"}), "") << "tried, not drawn";
 }
 
