@@ -83,6 +83,7 @@ OrderedJson RequirementsJson(const sim::ArenaRequirements& asked) {
   if (!asked.standing.empty()) json["standing"] = BoxesJson(asked.standing);
   if (asked.least_side != usual.least_side) json["least_side"] = asked.least_side;
   if (asked.anywhere) json["anywhere"] = true;
+  if (asked.open_share != usual.open_share) json["open_share"] = asked.open_share;
   return json;
 }
 
@@ -99,6 +100,7 @@ sim::ArenaRequirements AskedIn(const Json& json) {
   asked.standing = BoxesOf(json.value("standing", Json::array()));
   asked.least_side = json.value("least_side", asked.least_side);
   asked.anywhere = json.value("anywhere", asked.anywhere);
+  asked.open_share = json.value("open_share", asked.open_share);
   return asked;
 }
 

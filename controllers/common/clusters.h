@@ -19,8 +19,13 @@ class Clusters {
   std::span<const int> SizesOf(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range,
                                std::span<const sim::Vec2> obstacles);
 
+  // Of the last call; valid until the next one. The cluster of each robot, as an index into the sizes.
+  std::span<const int> members() const { return members_; }
+  // The cluster with most robots, of several the one of the first robot; 0 of nobody.
+  int Largest() const;
+
  private:
-  std::vector<bool> seen_;
+  std::vector<int> members_;
   std::vector<std::size_t> open_;
   std::vector<int> sizes_;
 };

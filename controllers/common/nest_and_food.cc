@@ -221,7 +221,7 @@ NestAndFoodScenario::Metrics NestAndFoodScenario::ItemMetrics() const {
   return items_.Metrics(static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1)));
 }
 
-void NestAndFoodScenario::AddWhereabouts(const sim::Observer& observer, Metrics& metrics) {
+void AddWhereabouts(const sim::Observer& observer, std::vector<std::pair<std::string, double>>& metrics) {
   std::array<std::vector<double>, 2> places;  // x, y
   for (sim::Tick tick = 0; tick <= observer.last_tick(); tick += sim::kTicksPerSecond) {
     for (const sim::RobotState& robot : observer.At(tick)) {

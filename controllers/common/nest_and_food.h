@@ -101,6 +101,9 @@ class FoodCount {
 // of its positions in the last `window` ticks.
 sim::Tick StillSince(const sim::Observer& observer, sim::RobotIndex robot, sim::Tick window, double radius);
 
+// median_x, median_y, spread_x and spread_y: median and standard deviation, m, over robots and seconds.
+void AddWhereabouts(const sim::Observer& observer, std::vector<std::pair<std::string, double>>& metrics);
+
 class NestAndFoodScenario : public sim::Scenario {
  public:
   const sim::Arena& arena() const override { return arena_; }
@@ -138,8 +141,6 @@ class NestAndFoodScenario : public sim::Scenario {
   // Fitness, lost robots and a total failure when there is no item in the nest.
   sim::Outcome Judge(const sim::Observer& observer) const;
   Metrics ItemMetrics() const;
-  // median_x, median_y, spread_x and spread_y: median and standard deviation, m, over robots and seconds.
-  static void AddWhereabouts(const sim::Observer& observer, Metrics& metrics);
   // Nest and food.
   std::vector<sim::Annotation> Places() const;
   // A trapped robot, which kept to its place from `since` on.

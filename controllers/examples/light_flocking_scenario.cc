@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "controllers/common/open_arena.h"  // PositionsAt
 #include "controllers/examples/light_flocking_metrics.h"
 #include "sim/arena/spawn.h"
 
@@ -11,12 +12,6 @@ namespace gauntlet::controllers::light_flocking {
 namespace {
 
 constexpr int kMaxRobots = 100;  // also the largest value of the parameter `robots`
-
-std::vector<sim::Vec2> PositionsAt(const sim::Observer& observer, sim::Tick tick) {
-  std::vector<sim::Vec2> positions;
-  for (const sim::RobotState& state : observer.At(tick)) positions.push_back(state.position());
-  return positions;
-}
 
 }  // namespace
 

@@ -271,7 +271,7 @@ std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequire
 std::string_view NameOf(ValidityRule rule) {
   constexpr std::string_view kNames[] = {
       "finite-numbers", "positive-size", "contained-obstacle", "start-blocked", "goal-blocked", "clearance",
-      "no-path",        "limits",        "outside-arena",      "keep-out"};
+      "no-path",        "limits",        "outside-arena",      "keep-out",      "open-area"};
   return kNames[static_cast<std::size_t>(rule)];
 }
 
@@ -307,10 +307,18 @@ IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const Aren
   };
   if (!arena_violation_) arena_violation_ = JudgeEnds(grid_, requirements_, -1, itself);
   if (!arena_violation_) arena_violation_ = JudgePath(grid_, requirements_, -1, itself);
+  if (requirements_.open_share > 0.0)
+    least_open_ = requirements_.open_share * static_cast<double>(OpenCells(grid_));
+}
+
+std::size_t IncrementalValidity::OpenCells(const OccupancyGrid& grid) const {
+  const std::vector<std::uint8_t> open = grid.Reachable(grid.CellAt(requirements_.start));
+  return static_cast<std::size_t>(std::ranges::count(open, std::uint8_t{1}));
 }
 
 bool IncrementalValidity::LeavesPath() const {
-  return GoalCutOff(grid_, requirements_) == nullptr;
+  if (GoalCutOff(grid_, requirements_) != nullptr) return false;
+  return least_open_ == 0.0 || static_cast<double>(OpenCells(grid_)) >= least_open_;
 }
 
 std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene) {
@@ -319,6 +327,17 @@ std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene
   if (std::optional<Violation> violation = JudgePath(candidate_, requirements_, static_cast<int>(index),
                                                      [&] { return GeneText(gene, index); })) {
     return violation;
+  }
+  if (least_open_ > 0.0) {
+    const auto open = static_cast<double>(OpenCells(candidate_));
+    if (open < least_open_) {
+      const double share = open / least_open_ * requirements_.open_share;
+      return BrokenByGene(kOpenArea, gene, index,
+                          "leaves a robot from " + PlaceText(requirements_.start) + " " +
+                              NumberText(std::round(1000.0 * share) / 10.0) +
+                              " % of what it reaches in the empty arena; want at least " +
+                              NumberText(100.0 * requirements_.open_share) + " %");
+    }
   }
   Take(gene);
   return std::nullopt;

@@ -25,6 +25,7 @@ enum class ValidityRule {
   kLimits,        // "limits": a number beyond what is simulated (constants below)
   kOutsideArena,  // "outside-arena": an obstacle nowhere reaches into the arena, also not on its path
   kKeepOut,       // "keep-out": an obstacle touches what the scenario keeps free, also on its path
+  kOpenArea,      // "open-area": too little of the arena is left to a robot that begins at the start
 };
 std::string_view NameOf(ValidityRule rule);
 
@@ -56,6 +57,7 @@ struct ArenaRequirements {
   std::vector<RoundedBox> standing = {};        // what blocks robots in the arena itself
   double least_side = kMinArenaSide;            // m, of the arena
   bool anywhere = false;                        // the arena's centre need not be the origin
+  double open_share = 0.0;  // of what the start is connected with in the empty arena, as much must be left
 };
 
 // The arena as robots of the scenario may go about in it. The test case obeys the rules up to "limits".
@@ -63,7 +65,7 @@ OccupancyGrid GridFor(const TestCase& test_case, const ArenaRequirements& requir
 
 // The first broken rule, or nothing: the arena first, then gene by gene in the order finite-numbers,
 // positive-size, limits, outside-arena, contained-obstacle, clearance, keep-out, start-blocked, goal-blocked,
-// no-path. Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits
+// no-path, open-area. Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits
 // (see Spawn). An obstacle that moves is judged where it begins, its distance from what is kept free on its
 // whole path.
 // Messages count obstacles from 1.
@@ -78,10 +80,10 @@ class IncrementalValidity {
   // Appends the gene when it breaks no rule; otherwise changes nothing and returns the violation. An arena
   // that breaks a rule by itself takes no gene.
   std::optional<Violation> TryAppend(const ObstacleGene& gene);
-  // The same without the dearest rule, that a path is left. Obstacles only ever take paths away: when one
-  // is left in the end, each gene would have left one.
+  // The same without the dearest rules, that a path and an open area are left. Obstacles only ever take them
+  // away: when they are left in the end, each gene would have left them.
   std::optional<Violation> TryAppendWhateverPathIsLeft(const ObstacleGene& gene);
-  // Whether the start is connected with every goal.
+  // Whether the start is connected with every goal and with as much of the arena as is asked for.
   bool LeavesPath() const;
 
   // The rule that the arena breaks without any obstacle.
@@ -94,6 +96,8 @@ class IncrementalValidity {
  private:
   // The rules but that a path is left. Nothing: candidate_ is the grid with the gene.
   std::optional<Violation> JudgeGene(const ObstacleGene& gene);
+  // Cells that the start is connected with.
+  std::size_t OpenCells(const OccupancyGrid& grid) const;
   void Take(const ObstacleGene& gene);
 
   ArenaRequirements requirements_;
@@ -103,6 +107,7 @@ class IncrementalValidity {
   OccupancyGrid grid_;
   OccupancyGrid candidate_;  // grid_ with the gene under judgement; kept to reuse its memory
   std::vector<OrientedBox> boxes_;
+  double least_open_ = 0.0;  // cells that the start must be connected with
 };
 
 }  // namespace gauntlet::sim

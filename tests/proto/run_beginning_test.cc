@@ -106,7 +106,8 @@ TEST(RunBeginning, RefusesForeignText) {
 TEST(RunBeginning, WhatFewScenariosAskForIsWrittenOnlyThere) {
   sim::RunBeginning written = Beginning();
   const std::string usual = WriteBeginning(written);
-  for (const char* key : {"cell_size", "asks_for_path", "further_goals", "keep_outs", "standing", "anywhere"})
+  for (const char* key :
+       {"cell_size", "asks_for_path", "further_goals", "keep_outs", "standing", "anywhere", "open_share"})
     EXPECT_EQ(usual.find(key), std::string::npos) << key;
   sim::ArenaRequirements& asked = written.requirements;
   asked.cell_size = 0.0085;
@@ -116,6 +117,7 @@ TEST(RunBeginning, WhatFewScenariosAskForIsWrittenOnlyThere) {
   asked.standing = {{{{-1.0, 2.0}, {0.0, 0.0}}, 0.3}};
   asked.least_side = 0.1;
   asked.anywhere = true;
+  asked.open_share = 0.75;
   const std::string text = WriteBeginning(written);
   const Result<sim::RunBeginning> read = ReadBeginning(text, "here");
   ASSERT_TRUE(read.ok()) << read.error().message;
@@ -127,6 +129,7 @@ TEST(RunBeginning, WhatFewScenariosAskForIsWrittenOnlyThere) {
   EXPECT_EQ(read->requirements.standing.at(0).radius, 0.3);
   EXPECT_EQ(read->requirements.least_side, 0.1);
   EXPECT_TRUE(read->requirements.anywhere);
+  EXPECT_EQ(read->requirements.open_share, 0.75);
   asked.keep_outs[0].radius = -1.0;
   EXPECT_THAT(CheckBeginning(written).error().message, HasSubstr("its keep-out is -1 m"));
 }

@@ -324,6 +324,27 @@ TEST(IncrementalValidityTest, AnImpossibleArenaTakesNoGene) {
   EXPECT_EQ(violation->rule, ValidityRule::kFiniteNumbers);
 }
 
+TEST(Validity, TheArenaStaysOpenWhereThatIsAskedFor) {
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.open_share = 0.75;
+  // Two walls that close off a corner of about a third of the arena's area.
+  TestCase test_case;
+  test_case.obstacles = {{-1.3, 0.3, 3.4, 0.2, 0.0}, {0.3, 1.65, 0.2, 2.8, 0.0}};
+  const auto violation = CheckValidity(test_case, requirements);
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(NameOf(violation->rule), "open-area");
+  EXPECT_EQ(violation->gene, 1);
+  EXPECT_THAT(violation->message,
+              testing::HasSubstr("% of what it reaches in the empty arena; want at least 75 %"));
+  test_case.obstacles.pop_back();
+  EXPECT_FALSE(CheckValidity(test_case, requirements)) << "the first wall alone closes nothing off";
+  test_case.obstacles = {{-1.3, 0.3, 3.4, 0.2, 0.0}, {0.3, 1.65, 0.2, 2.8, 0.0}};
+  requirements.open_share = 0.5;
+  EXPECT_FALSE(CheckValidity(test_case, requirements));
+  requirements.open_share = 0.0;
+  EXPECT_FALSE(CheckValidity(test_case, requirements)) << "nobody asks";
+}
+
 }  // namespace
 // With numbers that are sums of few powers of two all sums are exact.
 RC_GTEST_PROP(ValidityProperty, ATranslatedArenaGivesTheSameVerdicts, ()) {
@@ -336,6 +357,7 @@ RC_GTEST_PROP(ValidityProperty, ATranslatedArenaGivesTheSameVerdicts, ()) {
   requirements.keep_outs = {{{{1.0, 1.0}, {0.25, 0.5}}}, {{{-1.0, 0.0}, {0.0, 0.0}}, 0.25}};
   requirements.standing = {{{{0.0, -2.0}, {0.0, 0.0}}, 0.5}};
   requirements.anywhere = true;
+  requirements.open_share = 0.6;
   const Vec2 shift(std::exp2(*rc::gen::inRange(-2, 9)), -std::exp2(*rc::gen::inRange(-2, 9)));
   ArenaRequirements shifted = requirements;
   shifted.start += shift;
