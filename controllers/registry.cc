@@ -11,12 +11,15 @@
 #include "base/check.h"
 #include "base/nearest_name.h"
 #include "base/number_text.h"
+#include "controllers/aggregation/aggregation_registry.h"
+#include "controllers/coverage/coverage_registry.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "controllers/foraging/foraging_registry.h"
 #include "controllers/generic/generic_registry.h"
 #include "controllers/partitioning/partitioning_registry.h"
 #include "controllers/requirements/run_judge.h"
+#include "controllers/site_selection/site_selection_registry.h"
 
 namespace gauntlet::controllers {
 namespace {
@@ -90,17 +93,24 @@ double ScenarioInfo::TimeLimit(const sim::Parameters& given) const {
 }
 
 std::span<const ScenarioInfo> Scenarios() {
-  static const std::array scenarios = {
-      FlockingScenarioInfo(), ForagingScenarioInfo(), PartitioningScenarioInfo(),
-      light_flocking::LightFlockingScenarioInfo(), generic::GenericScenarioInfo()};
+  static const std::array scenarios = {FlockingScenarioInfo(),
+                                       ForagingScenarioInfo(),
+                                       PartitioningScenarioInfo(),
+                                       aggregation::AggregationScenarioInfo(),
+                                       coverage::CoverageScenarioInfo(),
+                                       site_selection::SiteSelectionScenarioInfo(),
+                                       light_flocking::LightFlockingScenarioInfo(),
+                                       generic::GenericScenarioInfo()};
   return scenarios;
 }
 
 std::span<const ControllerInfo> Controllers() {
   static const std::vector<ControllerInfo> controllers = [] {
     std::vector<ControllerInfo> all;
-    for (const auto& behaviour : {FlockingControllers(), ForagingControllers(), PartitioningControllers(),
-                                  light_flocking::LightFlockingControllers()}) {
+    for (const auto& behaviour :
+         {FlockingControllers(), ForagingControllers(), PartitioningControllers(),
+          aggregation::AggregationControllers(), coverage::CoverageControllers(),
+          site_selection::SiteSelectionControllers(), light_flocking::LightFlockingControllers()}) {
       all.insert(all.end(), behaviour.begin(), behaviour.end());
     }
     return all;
