@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/tables/table.h"
+#include "base/nearest_name.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
+#include "controllers/command/definition.h"
 #include "controllers/registry.h"
 #include "controllers/requirements/measures.h"
 #include "controllers/rows/row_json.h"
@@ -33,6 +35,7 @@ constexpr std::size_t kTextWidth = 110;
 
 struct ListOptions {
   std::string section;  // the name of one of kSections, "" = all
+  std::string name;     // of a scenario, of which all is told; "" = none
   bool json = false;
   std::vector<std::string> plugins;  // libraries: what they bring, and nothing else
 };
@@ -144,9 +147,41 @@ std::string CommandText() {
          "    one [[command.metric]] after the other.\n";
 }
 
+constexpr const char* kScenariosTitle =
+    "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n";
+
+// What to begin with in a scenario: the shipped experiment of its name, else the first one of it.
+std::string FirstCommand(std::string_view scenario) {
+  std::string first;
+  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
+    if (shipped.scenario == scenario && (first.empty() || shipped.name == scenario)) first = shipped.name;
+  }
+  return first.empty() ? "" : "gauntlet evolve " + first;
+}
+
 std::string ScenariosText() {
-  return "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n" +
-         RowsText(controllers::Scenarios()) + CommandText();
+  return kScenariosTitle + RowsText(controllers::Scenarios()) + CommandText();
+}
+
+std::string ScenariosOverview() {
+  Table table({"scenario", "begin with", "what it is"});
+  for (const controllers::ScenarioInfo& scenario : controllers::Scenarios())
+    table.AddRow({scenario.name, FirstCommand(scenario.name), scenario.description});
+  table.AddRow(
+      {"command", "gauntlet adopt FOLDER", "a program of yours simulates the runs (docs/any-simulator.md)"});
+  return kScenariosTitle + table.ToText() +
+         "\n  New here? Begin with 'gauntlet evolve flocking'. 'gauntlet list scenarios NAME' names the "
+         "parameters,\n"
+         "  metrics and types of failure of one scenario.\n";
+}
+
+// All that is known of one scenario.
+Result<std::string> ScenarioText(const std::string& name) {
+  if (name == controllers::command::kScenario) return kScenariosTitle + CommandText();
+  const auto& rows = controllers::Scenarios();
+  const controllers::ScenarioInfo* row = FindByName(rows, name);
+  if (row == nullptr) return InvalidInput(UnknownName("scenario", name, rows));
+  return kScenariosTitle + RowsText(std::span(row, 1));
 }
 
 std::string RowsText(std::span<const controllers::ControllerInfo> rows) {
@@ -257,6 +292,7 @@ struct Listing {
   const char* name;
   std::string (*text)();
   Json (*json)();
+  std::string (*overview)() = nullptr;  // printed instead of the text where nothing else is asked for
 };
 Json MeasureJson(const controllers::requirements::MeasureRow& row) {
   return {{"name", row.name},
@@ -269,7 +305,7 @@ Json MeasureJson(const controllers::requirements::MeasureRow& row) {
 constexpr Listing kSections[] = {
     {"experiments", ExperimentsText,
      [] { return ListOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
-    {"scenarios", ScenariosText, [] { return ListOf(controllers::Scenarios(), RowJson); }},
+    {"scenarios", ScenariosText, [] { return ListOf(controllers::Scenarios(), RowJson); }, ScenariosOverview},
     {"controllers", ControllersText, [] { return ListOf(controllers::Controllers(), RowJson); }},
     {"searches", SearchesText, [] { return ListOf(BuiltInCatalogue().searches, SearchJson); }},
     {"disturbances", DisturbancesText, [] { return ListOf(DisturbanceKeys(), KeyJson); }},
@@ -290,6 +326,13 @@ Result<ExitCode> ListPlugins(CommandContext& context, const ListOptions& options
 
 Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
   if (!options.plugins.empty()) return ListPlugins(context, options);
+  if (!options.name.empty()) {
+    if (options.section != "scenarios" || options.json)
+      return InvalidInput("list: a name is taken behind 'scenarios' only, and without --json");
+    TRY(const std::string text, ScenarioText(options.name));
+    context.out << text << std::flush;
+    return kExitDone;
+  }
   std::string text;
   Json json = Json::object();
   for (const Listing& section : kSections) {
@@ -297,7 +340,8 @@ Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
     if (options.json) {
       json[section.name] = section.json();
     } else {
-      text += (text.empty() ? "" : "\n") + section.text();
+      const bool alone = !options.section.empty() && section.overview != nullptr;
+      text += (text.empty() ? "" : "\n") + (alone ? section.overview() : section.text());
     }
   }
   if (options.json) text = JsonText(json);
@@ -318,11 +362,15 @@ void AddList(CommandParser& parser) {
                                   "the section to print: experiments, scenarios, controllers, searches, "
                                   "disturbances or measures (default: all)")
                       ->check(CLI::IsMember(names));
+  command.add_option("NAME", options.name, "of a scenario: all its parameters, metrics and types of failure")
+      ->needs(section);
   AddValue(command, "--plugin", "LIB.so", options.plugins, "list what this library of yours brings instead");
   command.get_option("--plugin")->excludes(section);
   command.add_flag("--json", options.json, "print the list as one JSON document");
   command.footer(R"(Examples:
   gauntlet list experiments
+  gauntlet list scenarios
+  gauntlet list scenarios flocking
   gauntlet list --plugin build/libmine.so
   gauntlet list controllers --json | jq '.controllers[].name')");
 }

@@ -193,7 +193,7 @@ std::vector<DataColumn> CommonColumns(Exported what) {
     case Exported::kRuns: {
       const RunColumns runs = CommonRunColumns();
       return Joined(Joined(runs.before_metrics,
-                           {{"...", "", "the scenario's metrics by their names: `gauntlet list scenarios`"}}),
+                           {{"...", "", "the scenario's metrics by their names: `gauntlet list scenarios NAME`"}}),
                     runs.after_metrics);
     }
     case Exported::kCases:

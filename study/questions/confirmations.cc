@@ -1,10 +1,12 @@
 #include "study/questions/confirmations.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/shell_quoted.h"
@@ -13,7 +15,9 @@
 #include "proto/run_failure.h"
 #include "proto/run_text.h"
 #include "search/experiment/failure_cells.h"
+#include "search/experiment/schema.h"
 #include "search/given/repeated_case.h"
+#include "search/search_table.h"
 #include "study/questions/baselines.h"
 
 namespace gauntlet {
@@ -36,9 +40,48 @@ Result<int> ReplicatesOf(const Asking& asking) {
   return WholeNumber(asking, "--replicates", 1, 100000, /*otherwise=*/0);
 }
 
+constexpr const char* kEngineOption = "--engine";
+
+const Key& EngineKey() {
+  return *std::ranges::find(BuiltInKeys(), std::string("physics"), &Key::path);
+}
+
+std::string EngineOf(const Asking& asking) {
+  return asking.Value(kEngineOption);
+}
+
 Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking& asking) {
   TRY(const int replicates, ReplicatesOf(asking));
-  return ConfirmationOf(experiment, replicates);
+  Experiment confirmation = ConfirmationOf(experiment, replicates);
+  const std::string engine = EngineOf(asking);
+  if (engine.empty()) return confirmation;
+  if (StartsProgram(experiment))
+    return InvalidInput(
+        fmt::format("--engine {}: '{}' is simulated by a program of yours", engine, experiment.name));
+  const Key& key = EngineKey();
+  if (engine == "argos")
+    return InvalidInput(
+        "--engine argos: ARGoS simulates adopted projects; confirm the case in such a campaign, "
+        "'gauntlet confirm ADOPTED case.json'");
+  if (std::ranges::find(key.choices, engine) == key.choices.end())
+    return InvalidInput(fmt::format("--engine {}: the engines are {}", engine, fmt::join(key.choices, ", ")));
+  if (key.get(experiment) == KeyValue(engine))
+    return InvalidInput(
+        fmt::format("--engine {}: the search itself ran under it; leave the option out", engine));
+  key.set(confirmation, engine);
+  return confirmation;
+}
+
+// Of other engines what is known of these cases, by their names.
+Status AddOtherEngines(const std::string& dir, std::vector<Confirmation>& confirmations) {
+  for (const std::string& engine : EngineKey().choices) {
+    TRY(auto answers, AnswersOfCalls(FolderOf(ConfirmQuestion(), dir, engine), ConfirmationKey));
+    for (const CaseAnswer& one : BestOf(std::move(answers))) {
+      const auto same = std::ranges::find(confirmations, one.name, &Confirmation::name);
+      if (same != confirmations.end()) same->elsewhere[engine] = one.tally();
+    }
+  }
+  return Ok{};
 }
 
 // A run without a result would end without one again.
@@ -54,8 +97,18 @@ Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
   const Table table = ConfirmationsTable(cases);
   const auto confirmed = std::ranges::count(cases, FailureVerdict::kFail, &Confirmation::verdict);
   const auto files = std::ranges::count(cases, RunId{0}, &Confirmation::run);
+  const std::string engine = EngineOf(asking);
   const std::string of_files =
       files == 0 ? "" : fmt::format(" ({} from {})", files, files == 1 ? "a file" : "files");
+  if (!engine.empty()) {
+    return Told{
+        .section = {.table = table,
+                    .sentences = {fmt::format(
+                        "{} of {} cases{} hold under {}: with fresh seeds they fail in at least half of the "
+                        "runs there, too.",
+                        confirmed, cases.size(), of_files, engine)}},
+        .json = JsonText({{"engine", engine}, {"cases", table.ToJson()}})};
+  }
   TRY(const std::vector<Baseline> baselines, ReadBaselines(asking.place));
   Told told{.section = {.table = table},
             .json = JsonText({{"cases", table.ToJson()}, {"baseline", BaselinesTable(baselines).ToJson()}})};
@@ -85,11 +138,16 @@ Verdicts: fail (confirmed: in at least half of the runs), flaky (less often), pa
 without a result). All is kept in DIR/confirm, is shown by 'show', and leaves the campaign as it was; a case
 that is known already is not simulated again. After Ctrl-C the same command goes on.
 
+With --engine box2d the cases are simulated under Box2D's contacts instead of those that the search had. A failure
+that does not hold there may be one of the model of contacts rather than of the controller. What comes of it is kept
+in DIR/confirm-box2d and stands beside the confirmed cases in 'show --json'.
+
 Examples:
   gauntlet confirm DIR 812
   gauntlet confirm DIR --all-failing --json
   gauntlet confirm DIR --elites
   gauntlet confirm DIR 812 817 --replicates 100
+  gauntlet confirm DIR --elites --engine box2d --replicates 30
   gauntlet confirm DIR my-case.json)";
 
 }  // namespace
@@ -150,6 +208,7 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   TRY(auto answers, AnswersOfCalls(FolderOf(ConfirmQuestion(), dir), ConfirmationKey));
   std::vector<Confirmation> confirmations;
   for (const CaseAnswer& one : BestOf(std::move(answers))) confirmations.push_back(ConfirmationIn(one));
+  TRY(AddOtherEngines(dir, confirmations));
   std::ranges::sort(confirmations, [](const Confirmation& a, const Confirmation& b) {
     return std::pair(a.run, a.name) < std::pair(b.run, b.name);
   });
@@ -174,16 +233,30 @@ Result<CampaignAnswers> ReadAnswers(const std::string& dir) {
 }
 
 Table ConfirmationsTable(const std::vector<Confirmation>& confirmations) {
-  Table table({ForPrograms("run"),
-               {"case", "case"},
-               {">failed", "k n"},
-               {"probability (95 %)", "interval"},
-               {"verdict", "verdict"},
-               {"", "message?"}});
+  std::set<std::string> engines;
   for (const Confirmation& one : confirmations) {
-    table.AddRow({one.run > 0 ? Cell(one.run) : Cell(), one.name,
-                  OutOfCell(one.tally.failures, one.tally.runs()), PercentCell(one.interval),
-                  NameOf(one.verdict), Cell(proto::Explained(one.message), TextValue(one.message))});
+    for (const auto& [engine, tally] : one.elsewhere) engines.insert(engine);
+  }
+  std::vector<Column> columns = {ForPrograms("run"),
+                                 {"case", "case"},
+                                 {">failed", "k n"},
+                                 {"probability (95 %)", "interval"},
+                                 {"verdict", "verdict"}};
+  for (const std::string& engine : engines)
+    columns.emplace_back(">in " + engine, fmt::format("{0}_k {0}_n", engine));
+  columns.emplace_back("", "message?");
+  Table table(columns);
+  for (const Confirmation& one : confirmations) {
+    std::vector<Cell> row = {one.run > 0 ? Cell(one.run) : Cell(), one.name,
+                             OutOfCell(one.tally.failures, one.tally.runs()), PercentCell(one.interval),
+                             NameOf(one.verdict)};
+    for (const std::string& engine : engines) {
+      const auto known = one.elsewhere.find(engine);
+      row.push_back(known == one.elsewhere.end() ? JsonCell(nlohmann::ordered_json::array({nullptr, nullptr}))
+                                                 : OutOfCell(known->second.failures, known->second.runs()));
+    }
+    row.emplace_back(proto::Explained(one.message), TextValue(one.message));
+    table.AddRow(std::move(row));
   }
   return table;
 }
@@ -199,9 +272,12 @@ Question ConfirmQuestion() {
                   {"--elites", "",
                    "the cases that the search has ended with: its population, or the elites of an archive",
                    Kind::kFlag},
-                  {"--replicates", "N", "exactly N runs per case, for a narrower interval"}},
+                  {"--replicates", "N", "exactly N runs per case, for a narrower interval"},
+                  {kEngineOption, "E",
+                   "under this physics engine instead of the search's: box2d or impulse"}},
       .cases = CasesToConfirm,
       .about = AboutConfirmation,
+      .variant = EngineOf,
       .key = ConfirmationKey,
       .enough = HasEnoughRuns,
       .tell = TellConfirmations,

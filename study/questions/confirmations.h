@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct Confirmation {
   std::string message;  // of the first run that ended without a result; "" = none did
   std::vector<FailedRun> failed = {};
   std::string campaign = "";  // the directory that holds its runs
+  // The same asked under another physics engine (confirm --engine), by its name.
+  std::map<std::string, FailureTally> elsewhere = {};
   // Of the failed runs the first that fails as most of them do; null: none failed.
   const FailedRun* Typical() const;
 };

@@ -17,6 +17,10 @@ std::vector<CaseAnswer>::const_iterator FindKey(const std::vector<CaseAnswer>& a
   return std::ranges::find(answers, key, &CaseAnswer::key);
 }
 
+std::string FolderAsked(const Question& question, const Asking& asking) {
+  return FolderOf(question, asking.place, question.variant == nullptr ? "" : question.variant(asking));
+}
+
 // Gives the call those cases of which nothing is known, and a folder that the same call finds again.
 Call WithCasesOf(Call call, const QuestionedCampaign& questioned, const std::string& folder,
                  const std::vector<CaseAnswer>& known) {
@@ -58,7 +62,8 @@ Result<Call> PlanInCampaign(const Question& question, const Asking& asking) {
     TRY(plan.experiment, question.about(plan.experiment, asking));
     experiments.push_back(std::make_shared<const Experiment>(plan.experiment));
   }
-  TRY(std::vector<CaseAnswer> known, AnswersOfCalls(FolderOf(question, asking.place), question.key));
+  const std::string folder = FolderAsked(question, asking);
+  TRY(std::vector<CaseAnswer> known, AnswersOfCalls(folder, question.key));
   std::erase_if(known, [&](const CaseAnswer& one) {
     return question.enough != nullptr && !question.enough(one, asking);
   });
@@ -72,7 +77,6 @@ Result<Call> PlanInCampaign(const Question& question, const Asking& asking) {
                           .key = question.key(plan.experiment, one.test_case)});
   }
   // The same call, stopped before, is gone on with; another one takes from it what is decided.
-  const std::string folder = FolderOf(question, asking.place);
   Call same = WithCasesOf(call, questioned, folder, OfEndedCalls(known));
   if (!same.Simulates() || CampaignDirectory::IsCampaign(same.directory)) return same;
   std::erase_if(known, [](const CaseAnswer& one) { return !one.decided; });
@@ -111,8 +115,9 @@ Result<QuestionedCampaign> CasesWithObstacles(const Asking& asking) {
   return InvalidInput(fmt::format("{} has no obstacles: there is nothing to leave out", bare->name));
 }
 
-std::string FolderOf(const Question& question, const std::string& place) {
-  return fmt::format("{}/{}{}", place, question.place == Question::Place::kCorpus ? "." : "", question.name);
+std::string FolderOf(const Question& question, const std::string& place, const std::string& variant) {
+  return fmt::format("{}/{}{}{}{}", place, question.place == Question::Place::kCorpus ? "." : "",
+                     question.name, variant.empty() ? "" : "-", variant);
 }
 
 Result<Call> PlanCall(const Question& question, const Asking& asking) {
@@ -122,7 +127,7 @@ Result<Call> PlanCall(const Question& question, const Asking& asking) {
 Result<std::vector<CaseAnswer>> AnswersTo(const Question& question, const Asking& asking, const Call& call) {
   std::vector<CaseAnswer> answers;
   if (question.place == Question::Place::kCampaign) {
-    TRY(auto stored, AnswersOfCalls(FolderOf(question, asking.place), question.key));
+    TRY(auto stored, AnswersOfCalls(FolderAsked(question, asking), question.key));
     const std::vector<CaseAnswer> known = BestOf(std::move(stored));
     for (const CaseAnswer& one : call.cases) {
       const auto found = FindKey(known, one.key);

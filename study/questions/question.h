@@ -107,6 +107,8 @@ struct Question {
   Result<QuestionedCampaign> (*cases)(const Asking& asking) = nullptr;  // nullptr: those that are named
   // An experiment that asks about cases of another one.
   Result<Experiment> (*about)(const Experiment& experiment, const Asking& asking) = nullptr;
+  // What is asked in another way is kept apart under this name; nullptr, "": it is not.
+  std::string (*variant)(const Asking& asking) = nullptr;
   CaseKey key = KeyOfCase;
   // Whether an answer under this key is enough; nullptr: any is.
   bool (*enough)(const CaseAnswer& answer, const Asking& asking) = nullptr;
@@ -120,8 +122,8 @@ struct Question {
 
 // The cases that are named. Error: also that one of them has no obstacle.
 Result<QuestionedCampaign> CasesWithObstacles(const Asking& asking);
-// Where the calls of a question are kept.
-std::string FolderOf(const Question& question, const std::string& place);
+// Where the calls of a question are kept. `variant`: Question::variant of what is asked.
+std::string FolderOf(const Question& question, const std::string& place, const std::string& variant = "");
 // Error: a case or an option is refused.
 Result<Call> PlanCall(const Question& question, const Asking& asking);
 // What is known by now of the cases of a call, under the names that it gives them; of kCampaign those that

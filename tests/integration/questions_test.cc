@@ -239,6 +239,28 @@ TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
   EXPECT_EQ(Json({"show", scratch / "c", "--json"})["confirmed"][0]["n"], 20);
 }
 
+TEST(ConfirmTest, AnotherEngineIsAskedApartAndStandsBeside) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c", 24);
+  const nlohmann::json own = Json(ConfirmAll(scratch / "c", 2));
+  const std::string run = own["cases"][0]["run"].dump();
+  const nlohmann::json there =
+      Json({"confirm", scratch / "c", run, "--engine", "box2d", "--replicates", "3", "--json", "--quiet"});
+  EXPECT_EQ(there["engine"], "box2d");
+  EXPECT_EQ(there["cases"][0]["n"], 3);
+  const nlohmann::json shown = Json({"show", scratch / "c", "--json"})["confirmed"];
+  ASSERT_EQ(shown.size(), own["cases"].size()) << "no case stands there twice";
+  EXPECT_EQ(shown[0]["k"], own["cases"][0]["k"]);
+  EXPECT_EQ(shown[0]["box2d_k"], there["cases"][0]["k"]);
+  EXPECT_EQ(shown[0]["box2d_n"], 3);
+  const auto refused = [&](const std::string& engine) {
+    return Gauntlet({"confirm", scratch / "c", run, "--engine", engine}).err;
+  };
+  EXPECT_THAT(refused("impulse"), HasSubstr("--engine impulse: the search itself ran under it"));
+  EXPECT_THAT(refused("bullet"), HasSubstr("--engine bullet: the engines are box2d, impulse"));
+  EXPECT_THAT(refused("argos"), HasSubstr("confirm the case in such a campaign"));
+}
+
 TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "c", 24);

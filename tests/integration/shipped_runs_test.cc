@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 #include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/support/paths.h"
@@ -71,10 +73,8 @@ TEST(ShippedRunsList, HasEveryShippedExperimentAndAtLeast200Runs) {
     commands += recorded.command + "\n";
   }
   EXPECT_GE(runs, 200u);
-  for (const std::string name :
-       {"flocking", "flocking-improved", "foraging", "task-partitioning", "task-partitioning-convergence",
-        "flocking-fitted", "flocking-fitted-improved", "foraging-fitted", "foraging-fitted-improved",
-        "task-partitioning-fitted", "task-partitioning-fitted-improved"}) {
+  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
+    const std::string& name = shipped.name;
     EXPECT_THAT(commands, testing::HasSubstr("evolve " + name + " "));
   }
 }

@@ -1,3 +1,4 @@
+// Covers: controllers/aggregation/aggregation_registry.cc
 #include "controllers/aggregation/aggregation_scenario.h"
 
 #include <gtest/gtest.h>
@@ -61,14 +62,6 @@ TEST(AggregationFailureTypes, AreNumberedAndNamed) {
   const FailureTypes& types = AggregationScenarioInfo().failure_types;
   ASSERT_EQ(types.types.size(), static_cast<std::size_t>(kFailureTypes));
   EXPECT_EQ(types.Find(17)->name, FailureLabel(17));
-}
-
-TEST(AggregationScenario, CornersOfTheArenaHaveNamesInPlaces) {
-  const sim::Arena arena{sim::TestCase{}};
-  EXPECT_EQ(NameOfPlace(PlaceOf({-2.9, -2.9}, arena)), "lower left");
-  EXPECT_EQ(NameOfPlace(PlaceOf({2.9, -2.9}, arena)), "lower right");
-  EXPECT_EQ(NameOfPlace(PlaceOf({0.0, 0.0}, arena)), "middle");
-  EXPECT_EQ(NameOfPlace(PlaceOf({5.0, 5.0}, arena)), "upper right") << "what lies beyond belongs to the edge";
 }
 
 }  // namespace

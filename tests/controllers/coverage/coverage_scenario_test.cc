@@ -1,3 +1,4 @@
+// Covers: controllers/coverage/coverage_registry.cc
 #include "controllers/coverage/coverage_scenario.h"
 
 #include <gtest/gtest.h>

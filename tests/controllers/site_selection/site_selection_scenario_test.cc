@@ -1,4 +1,5 @@
-// Covers: controllers/site_selection/site_selection_metrics.cc
+// Covers: controllers/site_selection/site_selection_metrics.cc,
+// controllers/site_selection/site_selection_registry.cc
 #include "controllers/site_selection/site_selection_scenario.h"
 
 #include <gtest/gtest.h>

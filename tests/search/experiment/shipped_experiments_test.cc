@@ -171,8 +171,10 @@ TEST_F(ShippedExperimentsTest, UnknownNameSuggestsTheNearest) {
               StartsWith("unknown experiment 'floking'; did you mean 'flocking'?"));
   EXPECT_EQ(
       LoadExperiment("quux", {}, BuiltInCatalogue()).error().message,
-      "unknown experiment 'quux'; shipped: flocking, flocking-fitted, flocking-fitted-improved, "
+      "unknown experiment 'quux'; shipped: aggregation, aggregation-improved, coverage, coverage-improved, "
+      "flocking, flocking-fitted, flocking-fitted-improved, "
       "flocking-improved, flocking-required, foraging, foraging-fitted, foraging-fitted-improved, gathering, "
+      "site-selection, site-selection-improved, "
       "task-partitioning, task-partitioning-convergence, task-partitioning-fitted, "
       "task-partitioning-fitted-improved (a file is named by a path ending in .toml)");
   setenv("GAUNTLET_EXPERIMENTS_DIR", "no-such-folder", 1);

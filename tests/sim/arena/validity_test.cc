@@ -335,7 +335,7 @@ TEST(Validity, TheArenaStaysOpenWhereThatIsAskedFor) {
   EXPECT_EQ(NameOf(violation->rule), "open-area");
   EXPECT_EQ(violation->gene, 1);
   EXPECT_THAT(violation->message,
-              testing::HasSubstr("% of what it reaches in the empty arena; want at least 75 %"));
+              ::testing::HasSubstr("% of what it reaches in the empty arena; want at least 75 %"));
   test_case.obstacles.pop_back();
   EXPECT_FALSE(CheckValidity(test_case, requirements)) << "the first wall alone closes nothing off";
   test_case.obstacles = {{-1.3, 0.3, 3.4, 0.2, 0.0}, {0.3, 1.65, 0.2, 2.8, 0.0}};
