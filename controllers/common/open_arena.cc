@@ -46,10 +46,9 @@ std::vector<sim::Tick> LastSeconds(const sim::Observer& observer, sim::Tick wind
 }
 
 bool IsStuck(const sim::Observer& observer, sim::RobotIndex robot) {
-  constexpr sim::Tick kWindow = 60 * sim::kTicksPerSecond;
   constexpr double kRadius = 0.05;  // m
-  const sim::Tick first = observer.last_tick() - kWindow;
-  return first >= 0 && StillSince(observer, robot, kWindow, kRadius) <= first;
+  const sim::Tick first = observer.last_tick() - kStuckTicks;
+  return first >= 0 && StillSince(observer, robot, kStuckTicks, kRadius) <= first;
 }
 
 int PlaceOf(const sim::Vec2& point, const sim::Arena& arena) {

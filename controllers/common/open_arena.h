@@ -40,8 +40,9 @@ std::vector<sim::Vec2> PositionsAt(const sim::Observer& observer, sim::Tick tick
 // are left out.
 std::vector<sim::Tick> LastSeconds(const sim::Observer& observer, sim::Tick window);
 
-// A robot is stuck that kept within 0.05 m of its mean place for the last minute of the run (chosen); nobody
-// is in a run that was shorter.
+// A robot is stuck that kept within 0.05 m of its mean place for so long up to the end of the run (chosen);
+// nobody is in a run that was shorter.
+inline constexpr sim::Tick kStuckTicks = 60 * sim::kTicksPerSecond;
 bool IsStuck(const sim::Observer& observer, sim::RobotIndex robot);
 
 // The arena as nine equal parts, row by row from the corner (-,-): 0 to 8.

@@ -88,8 +88,7 @@ const ScenarioInfo& CoverageScenarioInfo() {
           .style = {.lost = "stuck", .lost_is_failure = false, .annotations = kCoverageAnnotations},
           .metrics = kCoverageMetrics,
           .failures = {.axes = {{"hole_x", -1.5, 0.5, 6}, {"hole_y", -1.5, 0.5, 6}},
-                       .place = {{"hole_x", "hole_y",
-                                  0.5}}},  // chosen: a quarter of where random cases fail
+                       .place = {{"hole_x", "hole_y", 0.5}}},  // chosen: a quarter of where random cases fail
           .failure_types = CoverageFailureTypes(),
       });
   return info;

@@ -24,19 +24,22 @@ int FailureTypeOf(int place, double hole_area, bool jam) {
   return 6 * place + (hole_area < 4.0 ? 0 : hole_area <= 8.0 ? 2 : 4) + (jam ? 1 : 0);
 }
 
-FailureTypes CoverageFailureTypes() {
-  constexpr std::array<const char*, 6> kRows = {"below 4 m^2", "below 4 m^2, a jam",
-                                                "4 to 8 m^2",  "4 to 8 m^2, a jam",
-                                                "above 8 m^2", "above 8 m^2, a jam"};
-  FailureTypes all{.columns = "where the largest hole is",
-                   .rows = "its area, and whether robots are jammed",
-                   .untyped = "without a hole at the end"};
-  for (int type = 0; type < 6 * kPlaces; ++type) {
-    const std::string place(NameOfPlace(type / 6));
-    const std::string row = kRows.at(static_cast<std::size_t>(type % 6));
-    all.types.push_back({type, "hole " + place + ", " + row, place, row});
-  }
-  return all;
+const FailureTypes& CoverageFailureTypes() {
+  static const FailureTypes types = [] {
+    constexpr std::array<const char*, 6> kRows = {"below 4 m^2", "below 4 m^2, a jam",
+                                                  "4 to 8 m^2",  "4 to 8 m^2, a jam",
+                                                  "above 8 m^2", "above 8 m^2, a jam"};
+    FailureTypes all{.columns = "where the largest hole is",
+                     .rows = "its area, and whether robots are jammed",
+                     .untyped = "without a hole at the end"};
+    for (int type = 0; type < 6 * kPlaces; ++type) {
+      const std::string place(NameOfPlace(type / 6));
+      const std::string row = kRows.at(static_cast<std::size_t>(type % 6));
+      all.types.push_back({type, "hole " + place + ", " + row, place, row});
+    }
+    return all;
+  }();
+  return types;
 }
 
 CoverageScenario::CoverageScenario(const sim::TestCase& test_case, const CoverageScenarioSettings& settings,
@@ -89,7 +92,7 @@ sim::Outcome CoverageScenario::Evaluate(const sim::Observer& observer) {
 
   sim::Outcome outcome;
   for (sim::RobotIndex robot = 0; robot < observer.robots(); ++robot) {
-    const bool stood = last_stood_[static_cast<std::size_t>(robot)] >= last - 60 * sim::kTicksPerSecond;
+    const bool stood = last_stood_[static_cast<std::size_t>(robot)] >= last - kStuckTicks;
     outcome.lost.push_back(!stood && IsStuck(observer, robot));
   }
   const std::vector<sim::Vec2> end = PositionsAt(observer, last);

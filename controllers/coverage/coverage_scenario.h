@@ -22,7 +22,7 @@ inline constexpr sim::Payload kStandingMessage = {1};
 // The number of a type of failure, 0 to 53: where the centroid of the largest hole is (PlaceOf); whether it
 // has less than 4, up to 8 or more m^2; and whether there is a jam. All limits are chosen.
 int FailureTypeOf(int place, double hole_area, bool jam);
-FailureTypes CoverageFailureTypes();
+const FailureTypes& CoverageFailureTypes();
 
 class CoverageScenario : public sim::Scenario {
  public:

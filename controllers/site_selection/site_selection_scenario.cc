@@ -16,7 +16,6 @@ namespace {
 
 constexpr sim::Tick kUnanimous = 60 * sim::kTicksPerSecond;  // after which a run is over
 constexpr sim::Tick kJudged = 30 * sim::kTicksPerSecond;     // at the end
-constexpr sim::Tick kStuck = 60 * sim::kTicksPerSecond;      // of IsStuck
 constexpr double kDecided = 0.9;                             // share of the robots that makes a consensus
 constexpr double kLightHeight = 0.5;                         // m
 constexpr double kLeastGap = 0.2;                            // m between nest and sites
@@ -152,7 +151,7 @@ sim::Outcome SiteSelectionScenario::Evaluate(const sim::Observer& observer) {
     outcome.annotations.push_back(log_.Line(robot, {}));
     if (!IsStuck(observer, robot)) continue;
     ++stuck;
-    outcome.annotations.push_back({"trapped", "stuck", {}, 0.0, last - kStuck, {robot}});
+    outcome.annotations.push_back({"trapped", "stuck", {}, 0.0, last - kStuckTicks, {robot}});
   }
   outcome.failure.total = better_share < 0.5;
   if (outcome.failure.total) {

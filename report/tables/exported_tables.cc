@@ -192,9 +192,10 @@ std::vector<DataColumn> CommonColumns(Exported what) {
   switch (what) {
     case Exported::kRuns: {
       const RunColumns runs = CommonRunColumns();
-      return Joined(Joined(runs.before_metrics,
-                           {{"...", "", "the scenario's metrics by their names: `gauntlet list scenarios NAME`"}}),
-                    runs.after_metrics);
+      return Joined(
+          Joined(runs.before_metrics,
+                 {{"...", "", "the scenario's metrics by their names: `gauntlet list scenarios NAME`"}}),
+          runs.after_metrics);
     }
     case Exported::kCases:
       return Joined(CommonSearchColumns(), kCaseColumns);

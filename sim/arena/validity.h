@@ -65,10 +65,9 @@ OccupancyGrid GridFor(const TestCase& test_case, const ArenaRequirements& requir
 
 // The first broken rule, or nothing: the arena first, then gene by gene in the order finite-numbers,
 // positive-size, limits, outside-arena, contained-obstacle, clearance, keep-out, start-blocked, goal-blocked,
-// no-path, open-area. Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits
-// (see Spawn). An obstacle that moves is judged where it begins, its distance from what is kept free on its
-// whole path.
-// Messages count obstacles from 1.
+// no-path, open-area. Gene ranges are not checked here (they belong to the generator), nor is whether the
+// swarm fits (see Spawn). An obstacle that moves is judged where it begins, its distance from what is kept
+// free on its whole path. Messages count obstacles from 1.
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements);
 
 // Judges one gene after another, as generation and repair need it: O(cells) per gene instead of a fresh
