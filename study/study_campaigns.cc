@@ -226,6 +226,13 @@ Result<std::vector<SearchPlan>> PlanStage(const Study& study, const std::string&
       member.test_case.name = fmt::format("{} individual {}", search.SourceInWords(), member.id);
       plan->cases.push_back(std::move(member.test_case));
     }
+    if (plan->cases.empty()) {
+      return InvalidInput(
+          fmt::format("part '{}': {} ended without such cases, so there is nothing to simulate again; "
+                      "'worst:N' and 'all' "
+                      "take its runs instead",
+                      search.part.name, search.SourceInWords()));
+    }
     ++plan;
   }
   return plans;

@@ -87,20 +87,16 @@ sim::Outcome AggregationScenario::Evaluate(const sim::Observer& observer) {
   const sim::Tick last = observer.last_tick();
   const std::vector<sim::Vec2> robots = PositionsAt(observer, last);
   const Groups at_end = GroupsAt(observer, last);
+  sim::Outcome outcome;
+  const auto judged = static_cast<double>(LastSeconds(observer, kJudgedTicks).size());
   double gathered = kNotMeasured;
   double apart = kNotMeasured;
   for (const sim::Tick tick : LastSeconds(observer, last)) {
     const Groups groups = GroupsAt(observer, tick);
-    if (gathered == kNotMeasured && groups.Share(groups.first) >= kGathered)
-      gathered = tick * sim::kTickSeconds;
+    const double largest = groups.Share(groups.first);
+    if (gathered == kNotMeasured && largest >= kGathered) gathered = tick * sim::kTickSeconds;
     if (at_end.second >= 0 && AreOne(groups, at_end)) apart = tick * sim::kTickSeconds;
-  }
-
-  sim::Outcome outcome;
-  const std::vector<sim::Tick> judged = LastSeconds(observer, kJudgedTicks);
-  for (const sim::Tick tick : judged) {
-    const Groups groups = GroupsAt(observer, tick);
-    outcome.fitness += groups.Share(groups.first) / static_cast<double>(judged.size());
+    if (tick >= last - kJudgedTicks) outcome.fitness += largest / judged;
   }
   outcome.failure.total = outcome.fitness < kMajority;
 
