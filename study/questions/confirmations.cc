@@ -1,6 +1,7 @@
 #include "study/questions/confirmations.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <span>
 #include <utility>
@@ -11,9 +12,11 @@
 
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "master/directory/plugins.h"
 #include "proto/json_text.h"
 #include "proto/run_failure.h"
 #include "proto/run_text.h"
+#include "search/experiment/experiment_file.h"
 #include "search/experiment/failure_cells.h"
 #include "search/experiment/schema.h"
 #include "search/given/repeated_case.h"
@@ -46,14 +49,33 @@ const Key& EngineKey() {
   return *std::ranges::find(BuiltInKeys(), std::string("physics"), &Key::path);
 }
 
+bool IsExperimentFile(const std::string& engine) {
+  return engine.ends_with(".toml");
+}
+
+// Of an experiment's file what it is called.
 std::string EngineOf(const Asking& asking) {
-  return asking.Value(kEngineOption);
+  const std::string engine = asking.Value(kEngineOption);
+  return IsExperimentFile(engine) ? std::filesystem::path(engine).stem().string() : engine;
+}
+
+// The experiment that simulates the cases of `experiment` elsewhere.
+Result<Experiment> InFile(const std::string& file, const Experiment& experiment) {
+  TRY(const ExperimentText text, ReadExperimentText(file));
+  TRY(const Catalogue catalogue, CatalogueFor(text, {}, {}, {}));
+  TRY(Experiment elsewhere, ParseExperiment(text.text, text.file_name, {}, catalogue));
+  elsewhere.seed = experiment.seed;
+  return elsewhere;
 }
 
 Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking& asking) {
   TRY(const int replicates, ReplicatesOf(asking));
+  const std::string engine = asking.Value(kEngineOption);
+  if (IsExperimentFile(engine)) {
+    TRY(const Experiment elsewhere, InFile(engine, experiment));
+    return ConfirmationOf(elsewhere, replicates);
+  }
   Experiment confirmation = ConfirmationOf(experiment, replicates);
-  const std::string engine = EngineOf(asking);
   if (engine.empty()) return confirmation;
   if (StartsProgram(experiment))
     return InvalidInput(
@@ -61,10 +83,12 @@ Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking&
   const Key& key = EngineKey();
   if (engine == "argos")
     return InvalidInput(
-        "--engine argos: ARGoS simulates adopted projects; confirm the case in such a campaign, "
-        "'gauntlet confirm ADOPTED case.json'");
+        "--engine argos: ARGoS simulates adopted projects; name the experiment that 'gauntlet adopt' wrote, "
+        "--engine NAME.toml");
   if (std::ranges::find(key.choices, engine) == key.choices.end())
-    return InvalidInput(fmt::format("--engine {}: the engines are {}", engine, fmt::join(key.choices, ", ")));
+    return InvalidInput(
+        fmt::format("--engine {}: the engines are {}, and experiments by their files, NAME.toml", engine,
+                    fmt::join(key.choices, ", ")));
   if (key.get(experiment) == KeyValue(engine))
     return InvalidInput(
         fmt::format("--engine {}: the search itself ran under it; leave the option out", engine));
@@ -74,7 +98,14 @@ Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking&
 
 // Of other engines what is known of these cases, by their names.
 Status AddOtherEngines(const std::string& dir, std::vector<Confirmation>& confirmations) {
-  for (const std::string& engine : EngineKey().choices) {
+  std::vector<std::string> engines;
+  const std::string prefix = fmt::format("{}-", ConfirmQuestion().name);
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(dir, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(prefix)) engines.push_back(name.substr(prefix.size()));
+  }
+  for (const std::string& engine : engines) {
     TRY(auto answers, AnswersOfCalls(FolderOf(ConfirmQuestion(), dir, engine), ConfirmationKey));
     for (const CaseAnswer& one : BestOf(std::move(answers))) {
       const auto same = std::ranges::find(confirmations, one.name, &Confirmation::name);
@@ -139,8 +170,9 @@ without a result). All is kept in DIR/confirm, is shown by 'show', and leaves th
 that is known already is not simulated again. After Ctrl-C the same command goes on.
 
 With --engine box2d the cases are simulated under Box2D's contacts instead of those that the search had. A failure
-that does not hold there may be one of the model of contacts rather than of the controller. What comes of it is kept
-in DIR/confirm-box2d and stands beside the confirmed cases in 'show --json'.
+that does not hold there may be one of the model of contacts rather than of the controller. With --engine NAME.toml they
+are simulated by another experiment, such as one that 'gauntlet adopt' made of the same controller's ARGoS project. What
+comes of it is kept in DIR/confirm-box2d, or DIR/confirm-NAME, and stands beside the confirmed cases in 'show --json'.
 
 Examples:
   gauntlet confirm DIR 812
@@ -148,6 +180,7 @@ Examples:
   gauntlet confirm DIR --elites
   gauntlet confirm DIR 812 817 --replicates 100
   gauntlet confirm DIR --elites --engine box2d --replicates 30
+  gauntlet confirm DIR --elites --engine adopted.toml
   gauntlet confirm DIR my-case.json)";
 
 }  // namespace
@@ -268,13 +301,15 @@ Question ConfirmQuestion() {
       .summary = "do cases fail again with fresh seeds, and how often?",
       .help = kConfirmHelp,
       .named = Question::Named::kAny,
-      .options = {{"--all-failing", "", "every case of the campaign that has failed once", Kind::kFlag},
-                  {"--elites", "",
-                   "the cases that the search has ended with: its population, or the elites of an archive",
-                   Kind::kFlag},
-                  {"--replicates", "N", "exactly N runs per case, for a narrower interval"},
-                  {kEngineOption, "E",
-                   "under this physics engine instead of the search's: box2d or impulse"}},
+      .options =
+          {{"--all-failing", "", "every case of the campaign that has failed once", Kind::kFlag},
+           {"--elites", "",
+            "the cases that the search has ended with: its population, or the elites of an archive",
+            Kind::kFlag},
+           {"--replicates", "N", "exactly N runs per case, for a narrower interval"},
+           {kEngineOption, "E",
+            "under this physics engine instead of the search's, box2d or impulse, or by another experiment, "
+            "NAME.toml"}},
       .cases = CasesToConfirm,
       .about = AboutConfirmation,
       .variant = EngineOf,

@@ -37,7 +37,7 @@ struct Confirmation {
   std::string message;  // of the first run that ended without a result; "" = none did
   std::vector<FailedRun> failed = {};
   std::string campaign = "";  // the directory that holds its runs
-  // The same asked under another physics engine (confirm --engine), by its name.
+  // The same asked elsewhere (confirm --engine), by the name of the physics engine or the experiment's file.
   std::map<std::string, FailureTally> elsewhere = {};
   // Of the failed runs the first that fails as most of them do; null: none failed.
   const FailedRun* Typical() const;

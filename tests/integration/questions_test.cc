@@ -258,7 +258,25 @@ TEST(ConfirmTest, AnotherEngineIsAskedApartAndStandsBeside) {
   };
   EXPECT_THAT(refused("impulse"), HasSubstr("--engine impulse: the search itself ran under it"));
   EXPECT_THAT(refused("bullet"), HasSubstr("--engine bullet: the engines are box2d, impulse"));
-  EXPECT_THAT(refused("argos"), HasSubstr("confirm the case in such a campaign"));
+  EXPECT_THAT(refused("argos"), HasSubstr("--engine NAME.toml"));
+  EXPECT_THAT(refused("nowhere.toml"), HasSubstr("nowhere.toml"));
+}
+
+TEST(ConfirmTest, AnotherExperimentSimulatesTheCases) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c", 24);
+  const nlohmann::json own = Json(ConfirmAll(scratch / "c", 2))["cases"];
+  std::ofstream(scratch / "hasty.toml")
+      << "scenario = \"flocking\"\n[scenario_parameters]\ntime_limit = 1\n";  // nothing splits so soon
+  const std::string run = own[0]["run"].dump();
+  const nlohmann::json there = Json({"confirm", scratch / "c", run, "--engine", scratch / "hasty.toml",
+                                     "--replicates", "3", "--json", "--quiet"});
+  EXPECT_EQ(there["engine"], "hasty");
+  EXPECT_EQ(there["cases"][0]["k"], 0);
+  const nlohmann::json shown = Json({"show", scratch / "c", "--json"})["confirmed"];
+  EXPECT_EQ(shown[0]["k"], own[0]["k"]);
+  EXPECT_EQ(shown[0]["hasty_k"], 0);
+  EXPECT_EQ(shown[0]["hasty_n"], 3);
 }
 
 TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
