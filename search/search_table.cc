@@ -11,6 +11,7 @@
 #include "controllers/registry.h"
 #include "controllers/run_start.h"
 #include "search/archive/archive_search.h"
+#include "search/archive/cma_me_search.h"
 #include "search/evolution/genetic_algorithm.h"
 #include "search/evolution/random_search.h"
 #include "search/evolution/steady_state_search.h"
@@ -32,10 +33,10 @@ std::string_view NameOf(Individuals individuals) {
 }
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
-                                  RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
-                                  MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow(),
-                                  MarginRow(),         RepairRow(),      ProbabilityRow(),  StreamRow()};
+  static const std::array rows = {
+      GeneticRow(),  SteadyStateRow(),  RandomRow(),       ArchiveRow(),      RandomDeletionRow(), CmaMeRow(),
+      CaseListRow(), ResimulationRow(), ConfirmationRow(), MinimisationRow(), BlameRow(),          CheckRow(),
+      FitRow(),      MarginRow(),       RepairRow(),       ProbabilityRow(),  StreamRow()};
   return rows;
 }
 

@@ -16,7 +16,7 @@ namespace gauntlet {
 namespace {
 
 const std::vector<controllers::ParameterInfo> kArchiveParameters = {
-    {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: number of simulations"},
+    {"runs", "", 1000, 1, 1e8, true, "archive, random-deletion and cma-me only: number of simulations"},
     {"slots", "", 36, 1, 10000, true,
      "archive and random-deletion only: number of layouts under test at a time, and of workers kept busy"},
     {"keep_out", "m", 0, 0, 10, false,
@@ -37,7 +37,7 @@ double Get(const Experiment& experiment, Parameter parameter) {
 }
 
 std::string PlanOf(const Experiment& experiment) {
-  return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
+  return FormatCount(PlannedRuns(experiment)) + " runs";
 }
 
 std::optional<BrokenRule> CheckBudget(const Experiment& experiment) {
@@ -76,6 +76,26 @@ std::optional<Emitter> RestoreEmitter(CanonicalDecoder& decoder) {
 
 }  // namespace
 
+std::uint64_t PlannedRuns(const Experiment& experiment) {
+  return static_cast<std::uint64_t>(Get(experiment, kRuns));
+}
+
+Status CheckCollecting(const Experiment& experiment) {
+  if (CellsOf(experiment).empty()) {
+    return InvalidInput(
+        fmt::format("scenario {} does not say along which metrics its failures differ, which "
+                    "search.algorithm = \"{}\" needs: search.cells does",
+                    experiment.scenario, experiment.search.algorithm));
+  }
+  if (experiment.genome.genes < 1) {
+    return InvalidInput(
+        fmt::format("genome.genes = {}: search.algorithm = \"{}\" looks for obstacles that break the swarm; "
+                    "allow 1 or more",
+                    experiment.genome.genes, experiment.search.algorithm));
+  }
+  return Ok{};
+}
+
 ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario,
                              LinePolicy policy)
     : PopulationSearch(setup),
@@ -97,18 +117,7 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
   const Experiment& experiment = setup.experiment;
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   GAUNTLET_CHECK(scenario != nullptr, experiment.scenario);
-  if (CellsOf(setup.experiment).empty()) {
-    return InvalidInput(
-        fmt::format("scenario {} does not say along which metrics its failures differ, which "
-                    "search.algorithm = \"{}\" needs: search.cells does",
-                    scenario->name, setup.experiment.search.algorithm));
-  }
-  if (experiment.genome.genes < 1) {
-    return InvalidInput(
-        fmt::format("genome.genes = {}: search.algorithm = \"{}\" looks for obstacles that break the swarm; "
-                    "allow 1 or more",
-                    experiment.genome.genes, experiment.search.algorithm));
-  }
+  TRY(CheckCollecting(experiment));
   SearchSetup kept_out = setup;
   double& clearance = kept_out.requirements.clearance;
   clearance = std::max(clearance, Get(setup.experiment, kKeepOut));
@@ -119,7 +128,7 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
 
 std::uint64_t ArchiveSearch::Planned() const {
   const auto replicates = static_cast<std::uint64_t>(spec().replicates);
-  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(Get(setup_.experiment, kRuns)) / replicates);
+  return std::max<std::uint64_t>(1, PlannedRuns(setup_.experiment) / replicates);
 }
 
 std::vector<EvaluationRequest> ArchiveSearch::Ask() {

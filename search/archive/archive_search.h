@@ -20,6 +20,11 @@
 
 namespace gauntlet {
 
+// search.runs.
+std::uint64_t PlannedRuns(const Experiment& experiment);
+// Error: there are no cells that failures could be collected in, or no obstacles that could cause them.
+Status CheckCollecting(const Experiment& experiment);
+
 // What an emitter has cost and given.
 struct EmitterAccount {
   std::uint64_t runs = 0;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "search/archive/archive_search.h"
+#include "search/archive/cma_me_search.h"
 #include "search/evolution/genetic_algorithm.h"
 #include "search/evolution/random_search.h"
 #include "search/evolution/steady_state_search.h"
@@ -160,6 +161,14 @@ INSTANTIATE_TEST_SUITE_P(
                              SetAlgorithm(setup, "archive");
                              setup.experiment.search.parameters = {{"runs", 300.0}, {"slots", 20.0}};
                              return std::move(ArchiveSearch::Create(setup)).value();
+                           }},
+                      Kind{"CmaMe",
+                           [] {
+                             SearchSetup setup = ToySetup();
+                             setup.experiment.scenario = "flocking";
+                             SetAlgorithm(setup, "cma-me");
+                             setup.experiment.search.parameters = {{"runs", 230.0}, {"emitters", 3.0}};
+                             return std::move(CmaMeSearch::Create(setup)).value();
                            }},
                       Kind{"CaseList",
                            [] {

@@ -184,7 +184,7 @@ TEST(SteadyStateSearchTest, ImpossibleSettingsAreNamed) {
             "with search.algorithm = \"steady-state\" everybody is evaluated once (use search.replicates)");
   EXPECT_EQ(RefusalOfSettings({"search.algorithm=steady"}),
             "--set search.algorithm=steady: search.algorithm = \"steady\" is unknown, allowed genetic, "
-            "steady-state, random, archive, random-deletion, cases, resimulation, confirmation, "
+            "steady-state, random, archive, random-deletion, cma-me, cases, resimulation, confirmation, "
             "minimisation, blame, check, fit, margin, repair, probability, stream");
   EXPECT_EQ(RefusalOfSettings({"search.mode=steady-state"}),
             "--set search.mode=steady-state: unknown key 'search.mode'; write search.algorithm = "
