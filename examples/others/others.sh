@@ -76,15 +76,18 @@ PY
   esac
 }
 
-# What the project does not say itself: how well the swarm did, by the formulas of the file for our own engine.
+# How well the swarm did: as in the file for our own engine, whose formulas are over the same measures; else by the
+# score that was seen, and all failures are of one kind, because scores and places of these swarms hardly repeat.
 judge() {
-  [[ -e $here/$1.toml ]] || return 0
-  local key
-  for key in fitness failure; do
-    sed -i "s/^$key = .*/$(grep "^$key = " "$here/$1.toml" | sed 's/[&/]/\\&/g')/" "$2"
-  done
-  sed -i "/^\[search\]/a $(grep '^cells = ' "$here/$1.toml")" "$2"
-  printf '\n[[command.metric]]\nname = "dispersion"\nfrom = "trajectory:dispersion"\n' >> "$2"
+  local key cells='cells = "displacement:0:100:1"'
+  if [[ -e $here/$1.toml ]]; then
+    for key in fitness failure; do
+      sed -i "s/^$key = .*/$(grep "^$key = " "$here/$1.toml" | sed 's/[&/]/\\&/g')/" "$2"
+    done
+    cells=$(grep '^cells = ' "$here/$1.toml")
+    printf '\n[[command.metric]]\nname = "dispersion"\nfrom = "trajectory:dispersion"\n' >> "$2"
+  fi
+  sed -i "/^\[search\]/a $cells" "$2"
 }
 
 # confirmed DIR N: the runs of at most N confirmed cases, the toughest and of these the smallest first.
@@ -112,7 +115,7 @@ in_argos() {
   once "$out/random" gauntlet random "$out.toml" --cases 100
   once "$out/archive" gauntlet evolve "$out.toml" --set "search.runs=$runs"
   gauntlet show "$out/random" | grep -E 'total failures|no obstacles' || true
-  gauntlet confirm "$out/archive" --elites --no-progress
+  gauntlet confirm "$out/archive" --elites --no-progress || return 0  # it found nothing
   minimised "$out/archive" 3
 }
 
