@@ -93,6 +93,7 @@ struct ArchivedFailure {
 struct ArchiveView {
   std::vector<controllers::DescriptorAxis> axes;  // none: the search keeps no archive
   std::vector<ArchivedFailure> failures;
+  bool toughest = false;  // it keeps the toughest case of each cell rather than the smallest reliable one
 };
 
 struct SearchProgress {

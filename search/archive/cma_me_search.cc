@@ -166,7 +166,7 @@ void CmaMeSearch::Told(const EvaluationOutcome& outcome) {
 }
 
 ArchiveView CmaMeSearch::Archive() const {
-  ArchiveView view{grid_.axes(), {}};
+  ArchiveView view{.axes = grid_.axes(), .failures = {}, .toughest = true};
   for (const auto& [cell, elite] : elites_) {
     const Finding& found = elite.finding;
     if (!elite.fails()) continue;

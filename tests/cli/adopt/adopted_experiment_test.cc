@@ -24,7 +24,7 @@ AdoptedProject Project() {
   project.form.parameters = {{"speed", 2.5}, {"turn", -0.5}, {"off", 0.0}};
   project.form.boxes["wall"] = {1.0, 2.0, 3.0, 0.1, 45.0};
   project.score = "log:items: (\\d+)";
-  project.scores = {8.0, 10.0};
+  project.scores = {9.0, 9.0};
   project.robots = {Body("a", 0.0, 0.0, 0.04), Body("b", 1.0, 0.0, 0.05)};
   project.fixed = {Body("a", 0.0, 0.0, 0.04)};
   project.poses = {{0.0, 0.0}, {3.0, 1.0}};
@@ -62,12 +62,12 @@ TEST(AdoptedExperimentTest, OnlyKilobotsAreNotConfined) {
   EXPECT_FALSE((**ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {})).confine);
 }
 
-TEST(AdoptedExperimentTest, AFailureIsWorseThanEverAndByAQuarterThanUsual) {
+TEST(AdoptedExperimentTest, AFailureIsWhatChanceDoesNotBringAbout) {
   AdoptedProject project = Project();
-  project.scores = {8.0, 2.0, 11.0};
-  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < 2\""));
-  project.scores = {-2.0, -4.0};
-  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < -4\""));
+  project.scores = {8.0, 9.0, 10.0, 9.0};  // 9 - 4.541 * 0.8165 * sqrt(1.25)
+  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < 4.855\""));
+  project.scores = {6.0};
+  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < 4.5\""));
   project.scores = {-4.0, -4.0};
   EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < -5\""));
   EXPECT_TRUE(ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {}).ok());
