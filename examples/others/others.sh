@@ -76,11 +76,14 @@ PY
   esac
 }
 
-# How well the swarm did: as in the file for our own engine, whose formulas are over the same measures; else by the
-# score that was seen, and all failures are of one kind, because scores and places of these swarms hardly repeat.
+# How well the swarm did: as in the file for our own engine, whose formulas are over the same measures; of transport, how
+# far towards the light it ended, (3.5, 3.5); else by the score that was seen. Where no cells are given, all failures are
+# of one kind: scores and places of these swarms hardly repeat.
 judge() {
   local key cells='cells = "displacement:0:100:1"'
-  if [[ -e $here/$1.toml ]]; then
+  if [[ $1 == transport ]]; then
+    sed -i 's/^fitness = .*/fitness = "center_x + center_y"/; s/^failure = .*/failure = "center_x + center_y < 3"/' "$2"
+  elif [[ -e $here/$1.toml ]]; then
     for key in fitness failure; do
       sed -i "s/^$key = .*/$(grep "^$key = " "$here/$1.toml" | sed 's/[&/]/\\&/g')/" "$2"
     done
