@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/distributions.h"
+#include "analysis/statistics/sample.h"
 #include "base/key.h"
 #include "base/number_text.h"
 #include "base/printable.h"
@@ -96,14 +96,12 @@ std::string ConfineOf(const AdoptedProject& project) {
 double FailureBelow(const std::vector<double>& scores) {
   constexpr double kWorse = 0.25;
   constexpr double kByChance = 0.01;
-  const auto runs = static_cast<double>(scores.size());
-  const double mean = std::accumulate(scores.begin(), scores.end(), 0.0) / runs;
-  const double worse = std::min(std::ranges::min(scores), mean - kWorse * std::abs(mean));
-  if (scores.size() < 2) return worse;
-  double squares = 0.0;
-  for (const double score : scores) squares += (score - mean) * (score - mean);
-  const double spread = std::sqrt(squares / (runs - 1.0) * (1.0 + 1.0 / runs));
-  return std::min(worse, mean - analysis::StudentUpperQuantile(kByChance, runs - 1.0) * spread);
+  const analysis::Description usual = analysis::Describe(scores);
+  const double worse = std::min(usual.minimum, usual.mean - kWorse * std::abs(usual.mean));
+  if (!usual.sd) return worse;
+  const auto runs = static_cast<double>(usual.n);
+  const double further = *usual.sd * std::sqrt(1.0 + 1.0 / runs);
+  return std::min(worse, usual.mean - analysis::StudentUpperQuantile(kByChance, runs - 1.0) * further);
 }
 
 std::string AxisText(const std::string& metric, double low, double high) {

@@ -106,8 +106,7 @@ std::string NothingFound(const SearchSummary& summary) {
   tried("nearest_runs", "parts of cases that had failed once");
   return text +
          ".\nMore runs (`gauntlet resume DIR --set search.runs=N`), more obstacles (genome.genes) or fewer "
-         "cells "
-         "(search.cells) may find something.\n";
+         "cells (search.cells) may find something.\n";
 }
 
 // What the archive of a search for many different failures holds.

@@ -36,10 +36,6 @@ double Get(const Experiment& experiment, Parameter parameter) {
   return ValueOf(kArchiveParameters[parameter], experiment.search.parameters);
 }
 
-std::string PlanOf(const Experiment& experiment) {
-  return FormatCount(PlannedRuns(experiment)) + " runs";
-}
-
 std::optional<BrokenRule> CheckBudget(const Experiment& experiment) {
   if (std::optional<BrokenRule> cells = CheckCells(experiment)) return cells;
   const int replicates = experiment.search.replicates;
@@ -76,8 +72,13 @@ std::optional<Emitter> RestoreEmitter(CanonicalDecoder& decoder) {
 
 }  // namespace
 
-std::uint64_t PlannedRuns(const Experiment& experiment) {
-  return static_cast<std::uint64_t>(Get(experiment, kRuns));
+std::string PlanOfRuns(const Experiment& experiment) {
+  return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
+}
+
+std::uint64_t PlannedEvaluations(const Experiment& experiment) {
+  const auto replicates = static_cast<std::uint64_t>(experiment.search.replicates);
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(Get(experiment, kRuns)) / replicates);
 }
 
 Status CheckCollecting(const Experiment& experiment) {
@@ -126,14 +127,10 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
   return std::unique_ptr<ArchiveSearch>(new ArchiveSearch(kept_out, *scenario, policy));
 }
 
-std::uint64_t ArchiveSearch::Planned() const {
-  const auto replicates = static_cast<std::uint64_t>(spec().replicates);
-  return std::max<std::uint64_t>(1, PlannedRuns(setup_.experiment) / replicates);
-}
-
 std::vector<EvaluationRequest> ArchiveSearch::Ask() {
   std::vector<EvaluationRequest> requests;
-  for (; asked_ < waiting_.size() && evaluations_done_ + asked_ < Planned(); ++asked_) {
+  for (; asked_ < waiting_.size() && evaluations_done_ + asked_ < PlannedEvaluations(setup_.experiment);
+       ++asked_) {
     const Slot& slot = slots_[waiting_[asked_]];
     const Individual& individual = slot.finding.individual;
     requests.push_back(Request(individual, 1));
@@ -146,13 +143,13 @@ SearchProgress ArchiveSearch::Progress() const {
   return {.generation = 1,
           .generations = 1,
           .evaluations_done = evaluations_done_,
-          .evaluations_planned = Planned(),
+          .evaluations_planned = PlannedEvaluations(setup_.experiment),
           .individuals_planned = next_id_ - 1,
-          .finished = evaluations_done_ >= Planned()};
+          .finished = evaluations_done_ >= PlannedEvaluations(setup_.experiment)};
 }
 
 bool ArchiveSearch::AtBoundary() const {
-  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == Planned();
+  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == PlannedEvaluations(setup_.experiment);
 }
 
 std::vector<std::pair<std::string, double>> ArchiveSearch::Statistics() const {
@@ -471,7 +468,7 @@ SearchRow ArchiveRow() {
           .number = 8,
           .title = "archive search",
           .individuals = Individuals::kElites,
-          .plan = PlanOf,
+          .plan = PlanOfRuns,
           .make = Make<ArchiveSearch>};
 }
 
@@ -486,7 +483,7 @@ SearchRow RandomDeletionRow() {
       .number = 9,
       .title = "random search with deletion",
       .individuals = Individuals::kElites,
-      .plan = PlanOf,
+      .plan = PlanOfRuns,
       .make = Make<ArchiveSearch, LinePolicy::kDeletionOnly>};
 }
 

@@ -20,8 +20,9 @@
 
 namespace gauntlet {
 
-// search.runs.
-std::uint64_t PlannedRuns(const Experiment& experiment);
+// Of a search whose length is search.runs: in words, and as evaluations of one layout each.
+std::string PlanOfRuns(const Experiment& experiment);
+std::uint64_t PlannedEvaluations(const Experiment& experiment);
 // Error: there are no cells that failures could be collected in, or no obstacles that could cause them.
 Status CheckCollecting(const Experiment& experiment);
 
@@ -94,7 +95,6 @@ class ArchiveSearch : public PopulationSearch {
   void SaveRest(CanonicalEncoder& encoder) const override;
   Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
 
-  std::uint64_t Planned() const;
   bool Late() const { return evaluations_done_ > kEarly; }
   // What the outcome says of the finding.
   void Count(const EvaluationOutcome& outcome, Finding& finding) const;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/number_text.h"
 #include "controllers/registry.h"
 #include "search/archive/archive_search.h"
 #include "search/experiment/failure_cells.h"
@@ -49,14 +48,10 @@ Result<std::unique_ptr<CmaMeSearch>> CmaMeSearch::Create(const SearchSetup& setu
   return std::unique_ptr<CmaMeSearch>(new CmaMeSearch(setup));
 }
 
-std::uint64_t CmaMeSearch::Planned() const {
-  const auto replicates = static_cast<std::uint64_t>(spec().replicates);
-  return std::max<std::uint64_t>(1, PlannedRuns(setup_.experiment) / replicates);
-}
-
 std::vector<EvaluationRequest> CmaMeSearch::Ask() {
   std::vector<EvaluationRequest> requests;
-  for (; asked_ < waiting_.size() && evaluations_done_ + asked_ < Planned(); ++asked_) {
+  for (; asked_ < waiting_.size() && evaluations_done_ + asked_ < PlannedEvaluations(setup_.experiment);
+       ++asked_) {
     newborns_.push_back(waiting_[asked_].finding.individual);
     requests.push_back(Request(newborns_.back(), 1));
   }
@@ -180,9 +175,9 @@ SearchProgress CmaMeSearch::Progress() const {
   return {.generation = 1,
           .generations = 1,
           .evaluations_done = evaluations_done_,
-          .evaluations_planned = Planned(),
-          .individuals_planned = Planned(),
-          .finished = evaluations_done_ >= Planned()};
+          .evaluations_planned = PlannedEvaluations(setup_.experiment),
+          .individuals_planned = PlannedEvaluations(setup_.experiment),
+          .finished = evaluations_done_ >= PlannedEvaluations(setup_.experiment)};
 }
 
 std::vector<std::pair<std::string, double>> CmaMeSearch::Statistics() const {
@@ -192,7 +187,7 @@ std::vector<std::pair<std::string, double>> CmaMeSearch::Statistics() const {
 }
 
 bool CmaMeSearch::AtBoundary() const {
-  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == Planned();
+  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == PlannedEvaluations(setup_.experiment);
 }
 
 Status CmaMeSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
@@ -214,7 +209,7 @@ SearchRow CmaMeRow() {
       .number = 14,
       .title = "CMA-ME search",
       .individuals = Individuals::kElites,
-      .plan = [](const Experiment& e) { return FormatCount(PlannedRuns(e)) + " runs"; },
+      .plan = PlanOfRuns,
       .make = Make<CmaMeSearch>};
 }
 

@@ -77,7 +77,6 @@ class CmaMeSearch : public PopulationSearch {
   void Told(const EvaluationOutcome& outcome) override;
   Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
 
-  std::uint64_t Planned() const;
   Emitter Begin() const;
   void Propose(std::size_t emitter);
   sim::TestCase CaseAt(const SettingsPoint& point, IndividualId id) const;

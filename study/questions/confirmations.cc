@@ -53,14 +53,13 @@ bool IsExperimentFile(const std::string& engine) {
   return engine.ends_with(".toml");
 }
 
-// Of an experiment's file what it is called.
+// Where the cases are simulated, in a word; of an experiment's file its name.
 std::string EngineOf(const Asking& asking) {
   const std::string engine = asking.Value(kEngineOption);
   return IsExperimentFile(engine) ? std::filesystem::path(engine).stem().string() : engine;
 }
 
-// The experiment that simulates the cases of `experiment` elsewhere.
-Result<Experiment> InFile(const std::string& file, const Experiment& experiment) {
+Result<Experiment> ReadElsewhere(const std::string& file, const Experiment& experiment) {
   TRY(const ExperimentText text, ReadExperimentText(file));
   TRY(const Catalogue catalogue, CatalogueFor(text, {}, {}, {}));
   TRY(Experiment elsewhere, ParseExperiment(text.text, text.file_name, {}, catalogue));
@@ -72,7 +71,7 @@ Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking&
   TRY(const int replicates, ReplicatesOf(asking));
   const std::string engine = asking.Value(kEngineOption);
   if (IsExperimentFile(engine)) {
-    TRY(const Experiment elsewhere, InFile(engine, experiment));
+    TRY(const Experiment elsewhere, ReadElsewhere(engine, experiment));
     return ConfirmationOf(elsewhere, replicates);
   }
   Experiment confirmation = ConfirmationOf(experiment, replicates);
@@ -96,8 +95,8 @@ Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking&
   return confirmation;
 }
 
-// Of other engines what is known of these cases, by their names.
-Status AddOtherEngines(const std::string& dir, std::vector<Confirmation>& confirmations) {
+// What is known of these cases elsewhere, by their names.
+Status AddElsewhere(const std::string& dir, std::vector<Confirmation>& confirmations) {
   std::vector<std::string> engines;
   const std::string prefix = fmt::format("{}-", ConfirmQuestion().name);
   std::error_code error;
@@ -241,7 +240,7 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   TRY(auto answers, AnswersOfCalls(FolderOf(ConfirmQuestion(), dir), ConfirmationKey));
   std::vector<Confirmation> confirmations;
   for (const CaseAnswer& one : BestOf(std::move(answers))) confirmations.push_back(ConfirmationIn(one));
-  TRY(AddOtherEngines(dir, confirmations));
+  TRY(AddElsewhere(dir, confirmations));
   std::ranges::sort(confirmations, [](const Confirmation& a, const Confirmation& b) {
     return std::pair(a.run, a.name) < std::pair(b.run, b.name);
   });

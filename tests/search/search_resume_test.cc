@@ -59,6 +59,14 @@ Factory SteadyState(ParentSelection selection) {
   };
 }
 
+SearchSetup OnFlocking(const std::string& algorithm, sim::Parameters parameters) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.scenario = "flocking";
+  SetAlgorithm(setup, algorithm);
+  setup.experiment.search.parameters = std::move(parameters);
+  return setup;
+}
+
 std::unique_ptr<SearchAlgorithm> ListOf(std::vector<sim::TestCase> cases) {
   SearchSetup setup = ToySetup();
   SetAlgorithm(setup, "cases");
@@ -156,19 +164,15 @@ INSTANTIATE_TEST_SUITE_P(
                            [] { return std::move(RandomSearch::Create(RandomSetup(230))).value(); }},
                       Kind{"Archive",
                            [] {
-                             SearchSetup setup = ToySetup();
-                             setup.experiment.scenario = "flocking";
-                             SetAlgorithm(setup, "archive");
-                             setup.experiment.search.parameters = {{"runs", 300.0}, {"slots", 20.0}};
-                             return std::move(ArchiveSearch::Create(setup)).value();
+                             return std::move(ArchiveSearch::Create(
+                                                  OnFlocking("archive", {{"runs", 300.0}, {"slots", 20.0}})))
+                                 .value();
                            }},
                       Kind{"CmaMe",
                            [] {
-                             SearchSetup setup = ToySetup();
-                             setup.experiment.scenario = "flocking";
-                             SetAlgorithm(setup, "cma-me");
-                             setup.experiment.search.parameters = {{"runs", 230.0}, {"emitters", 3.0}};
-                             return std::move(CmaMeSearch::Create(setup)).value();
+                             return std::move(CmaMeSearch::Create(
+                                                  OnFlocking("cma-me", {{"runs", 230.0}, {"emitters", 3.0}})))
+                                 .value();
                            }},
                       Kind{"CaseList",
                            [] {
