@@ -50,6 +50,7 @@ Status SearchDriver::Ask() {
     PendingEvaluation evaluation;
     const double length = PredictedLength(request);
     proto::SeededSpecs specs(SpecOfRun(parts_.plan.experiment, request, 0));
+    evaluation.runs.reserve(request.replicates);
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
       run.id = ++last_asked_;
@@ -121,10 +122,7 @@ void SearchDriver::Store(FinishedRun finished) {
   --at_backend_;
   if (has_generations_) ticks_[run.individual] = static_cast<double>(finished.result.ticks);
   if (parts_.on_run) parts_.on_run(run, finished);
-  // Encoded anew: what a worker may have put in beside the result is not stored.
-  run.result = KeepsWays(parts_.plan.experiment)
-                   ? proto::EncodeRunResult(finished.result, proto::TrajectoryEncoding::kLeaveOut)
-                   : proto::EncodeWithoutWays(finished.result);
+  proto::EncodedSpec spec = std::exchange(run.spec, {});  // for the store alone
   run.message = finished.result.message;
   run.hash = finished.result.hash;
   run.worker = std::move(finished.worker);
@@ -133,12 +131,16 @@ void SearchDriver::Store(FinishedRun finished) {
   run.fitness = finished.result.fitness;
   run.total_failure = finished.result.failure.total;
   run.failure_type = finished.result.failure.type;
-  parts_.store.AddRun(run);
+  StoredRun stored = run;
+  stored.spec = std::move(spec);
+  // Encoded anew: what a worker may have put in beside the result is not stored.
+  stored.result = KeepsWays(parts_.plan.experiment)
+                      ? proto::EncodeRunResult(finished.result, proto::TrajectoryEncoding::kLeaveOut)
+                      : proto::EncodeWithoutWays(finished.result);
+  parts_.store.AddRun(std::move(stored));
   if (parts_.search.WantsMetrics()) run.effects = SideEffectsOf(finished.result);
   if (parts_.search.WantsMetrics()) run.metrics = std::move(finished.result.metrics);
   if (parts_.search.WantsWays()) run.robots = std::move(finished.result.robots);
-  run.spec.clear();
-  run.result.clear();
 }
 
 void SearchDriver::Committed(RunId id) {

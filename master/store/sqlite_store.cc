@@ -72,13 +72,15 @@ void SqliteStore::Add(Record record) {
   bool full = false;
   {
     std::unique_lock lock(mutex_);
-    records_written_.wait(lock, [this] { return queue_.size() < kLargestQueue || failure_.has_value(); });
+    records_written_.wait(lock, [this] { return queued_records_ < kLargestQueue || failure_.has_value(); });
     if (failure_) return;  // never acknowledged; the caller learns of it from Committed()
-    if (std::holds_alternative<StoredRun>(record)) ++queued_runs_;
     first = queue_.empty();
     if (first) due_ = std::chrono::steady_clock::now() + options_.longest_wait;
-    queue_.push_back(std::move(record));
-    full = queued_runs_ == kLargestGroup || queue_.size() == kLargestQueue;
+    if (first || queue_.back().runs == kLargestGroup) queue_.emplace_back();
+    Group& last = queue_.back();
+    if (std::holds_alternative<StoredRun>(record)) ++last.runs;
+    last.records.push_back(std::move(record));
+    full = ++queued_records_ == kLargestQueue || last.runs == kLargestGroup;
   }
   // The writer sleeps between: one wake-up for a group, not for every record.
   if (first || full) records_waiting_.notify_one();
@@ -95,34 +97,29 @@ void SqliteStore::WriteLoop() {
 }
 
 bool SqliteStore::TakeGroup(Group& group) {
-  group.clear();
+  group = {};
   std::unique_lock lock(mutex_);
   records_waiting_.wait(lock, [this] { return !queue_.empty() || closing_; });
+  if (queue_.empty()) return false;
   const auto ready = [this] {
-    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || flushing_ || closing_;
+    return queue_.front().runs == kLargestGroup || queued_records_ >= kLargestQueue || flushing_ || closing_;
   };
   while (!ready() && std::chrono::steady_clock::now() < due_) {
     const auto due = due_;  // CommitWithin may change it meanwhile
     records_waiting_.wait_until(lock, due);
   }
-  std::size_t runs = 0;
-  while (!queue_.empty()) {
-    const bool is_run = std::holds_alternative<StoredRun>(queue_.front());
-    if (is_run && runs == kLargestGroup) break;
-    if (is_run) ++runs;
-    group.push_back(std::move(queue_.front()));
-    queue_.pop_front();
-  }
-  queued_runs_ -= runs;
-  writing_ = !group.empty();
-  return writing_;
+  group = std::move(queue_.front());
+  queue_.pop_front();
+  queued_records_ -= group.records.size();
+  writing_ = true;
+  return true;
 }
 
 Status SqliteStore::WriteGroup(const Group& group) {
   const LockedTables tables = Tables();
   Status status = tables->Begin();
-  for (auto record = group.begin(); status && record != group.end(); ++record) {
-    status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, *record);
+  for (const Record& record : group.records) {
+    if (status) status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, record);
   }
   if (status) status = tables->StoreTotals();
   if (status && options_.guard) {
@@ -143,13 +140,13 @@ void SqliteStore::Report(const Group& group, const Status& written) {
     writing_ = false;
     if (written) {
       ++commits_;
-      for (const Record& record : group) {
+      for (const Record& record : group.records) {
         if (const auto* run = std::get_if<StoredRun>(&record)) committed_.push_back(run->id);
       }
     } else {
       failure_ = written.error();
       queue_.clear();
-      queued_runs_ = 0;
+      queued_records_ = 0;
     }
   }
   records_written_.notify_all();

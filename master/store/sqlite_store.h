@@ -108,7 +108,10 @@ class SqliteStore final : public ResultStore {
  private:
   using Record =
       std::variant<StoredSearch, Newborns, StoredLine, StoredRun, SavedState, Finished, StoredEvent>;
-  using Group = std::vector<Record>;
+  struct Group {
+    std::vector<Record> records;
+    std::size_t runs = 0;  // among them
+  };
 
   // The tables and, as long as this lives, database_mutex_.
   struct LockedTables {
@@ -144,8 +147,8 @@ class SqliteStore final : public ResultStore {
   mutable std::mutex mutex_;
   std::condition_variable records_waiting_;
   std::condition_variable records_written_;
-  std::deque<Record> queue_;
-  std::size_t queued_runs_ = 0;
+  std::deque<Group> queue_;  // each as large as a group may be, but for the last
+  std::size_t queued_records_ = 0;
   bool writing_ = false;                            // a group has left the queue and is not committed yet
   bool flushing_ = false;                           // Flush waits
   std::chrono::steady_clock::time_point due_ = {};  // when what waits is committed at the latest
