@@ -15,8 +15,8 @@ constexpr char kPlain = 'p';
 constexpr char kAlone = 'z';        // Zstandard
 constexpr char kWithExample = 'e';  // Zstandard, the example as its dictionary
 
-// Zstandard's fastest that does not pack much less. Level 3, its default, makes results 1 to 4 % smaller (with
-// trajectories 5 %) and takes two to four times as long (ten times).
+// Zstandard's fastest that does not pack much less. Level 3, its default, makes results 1 to 4 % smaller
+// (with trajectories 5 %) and takes two to four times as long (ten times).
 constexpr int kLevel = -1;
 // What Zstandard puts around the bytes takes back what it could save of fewer: results of a few numbers.
 constexpr std::size_t kFewestBytes = 64;
