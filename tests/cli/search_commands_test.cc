@@ -90,7 +90,7 @@ TEST_F(DryRun, SaysWhatAnEvolutionWouldCost) {
             "  time          about 12 min 30 s with 2 workers (11 of the first runs took 500 ms each here; "
             "later ones may differ)\n"
             "  no obstacles  0 of 5 runs fail\n"
-            "  disk          about 1.7 MB\n");
+            "  disk          about 1.8 MB\n");
   EXPECT_THAT(err_.str(), IsEmpty());
   ExpectNothingMade();
 }
@@ -127,7 +127,7 @@ TEST_F(DryRun, LooksAtTheCasesOfEvaluate) {
             "  test cases  1\n"
             "  time        about 7.5 s with 2 workers (11 of the first runs took 500 ms each here; later "
             "ones may differ)\n"
-            "  disk        about 111 kB\n");
+            "  disk        about 112 kB\n");
   ExpectNothingMade();
 }
 
