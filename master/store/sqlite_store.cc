@@ -119,7 +119,8 @@ Status SqliteStore::WriteGroup(const Group& group) {
   const LockedTables tables = Tables();
   Status status = tables->Begin();
   for (const Record& record : group.records) {
-    if (status) status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, record);
+    if (!status) break;
+    status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, record);
   }
   if (status) status = tables->StoreTotals();
   if (status && options_.guard) {

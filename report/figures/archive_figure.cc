@@ -67,10 +67,9 @@ std::vector<NamedFigure> ArchiveFigures(const CampaignFacts& facts) {
   const Experiment experiment = facts.plans.front().experiment;
   const std::string reading = fmt::format(
       "A cell for each way in which the swarm breaks, by two metrics of the runs; in it the arena with the "
-      "{}, "
-      "and in how many of its runs so far. A red spot is the place where the swarm broke, where the metrics "
-      "are a place. These runs took part in choosing the layouts: 'gauntlet confirm --elites' simulates them "
-      "with fresh seeds.",
+      "{}, and in how many of its runs so far. A red spot is the place where the swarm broke, where the "
+      "metrics are a place. These runs took part in choosing the layouts: 'gauntlet confirm --elites' "
+      "simulates them with fresh seeds.",
       summary.archive.toughest ? "toughest layout that did it"
                                : "smallest layout that did it in 3 of 3 or 4 of 5 runs");
   return {{"archive", kTitle, reading, [=] { return analysis::DrawLayoutGrid(GridOf(summary, experiment)); },
