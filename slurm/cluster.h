@@ -1,6 +1,7 @@
 // A cluster as Gauntlet speaks to it: what a cluster file says (slurm/clusters/, docs/clusters.md).
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
@@ -40,12 +41,20 @@ struct Cluster {
   std::vector<std::string> never_starts;  // states and reasons with which a waiting job stays for ever
   std::map<std::string, std::string> directives;  // the script's line with @VALUE@, by what is asked for
   std::map<std::string, JobPhase> states;
+  std::map<std::string, std::string> advice;  // what a person can do about words of the scheduler
   // Failed starts in a row without a word from any worker ever, after which the master ends; 0 = never.
   int give_up_after = 20;
 };
 
 // A script that stands for Slurm's two, slurm/worker.sbatch and slurm/master.sbatch.
 inline constexpr std::string_view kSlurmScripts = "sbatch";
+
+// The files slurm/clusters/*.toml.
+struct ShippedCluster {
+  std::string_view name;
+  std::string_view text;
+};
+extern const std::array<ShippedCluster, 4> kShippedClusters;
 
 // The form of the lines that `look` prints.
 inline constexpr std::string_view kLookForm = "id|state|node|reason|name";

@@ -7,18 +7,29 @@
 
 #include "base/shell_quoted.h"
 #include "slurm/job_status.h"
-#include "slurm/shipped_texts.h"
 
 namespace gauntlet::slurm {
 namespace {
 
 using Values = std::map<std::string, std::string>;
 
-// What a template need not name.
-constexpr std::string_view kOptionalName = "MARGIN";
+// Whether the lines behind the directives are those of kRunJob.
+constexpr std::string_view kRun = "@RUN@";
+bool IsRun(std::string_view job_template) {
+  return job_template.find(kRun) != std::string_view::npos;
+}
+
+// What a template need not name: the margin, and what @RUN@ names or all of Slurm's templates name instead.
+bool IsOptional(std::string_view name, bool run) {
+  using Names = std::initializer_list<std::string_view>;
+  const Names others = run ? Names{"CPUS", "SLOTS", "LOG", "ACCESS", "WORKER", "MASTER", "TIME"}
+                           : Names{"STEM", "LOGS", "COMMAND", "SECONDS"};
+  return name == "MARGIN" || std::ranges::count(others, name) > 0;
+}
 
 // Replaces each @NAME@; "@" in other places (--signal=B:TERM@120) stands.
-Result<std::string> Fill(std::string_view text, const Values& values) {
+Result<std::string> Fill(std::string_view job_template, const Values& values) {
+  const std::string text = Replaced(std::string(job_template), kRun, kRunJob);
   static const std::regex kName("@([A-Z_]+)@");
   std::string result;
   std::set<std::string> used;
@@ -34,7 +45,7 @@ Result<std::string> Fill(std::string_view text, const Values& values) {
     rest = (*match)[0].second;
   }
   for (const auto& [name, value] : values) {
-    if (!used.contains(name) && name != kOptionalName)
+    if (!used.contains(name) && !IsOptional(name, IsRun(job_template)))
       return InvalidInput("the job template lacks @" + name + "@");
   }
   return result.append(rest, end);
@@ -72,12 +83,6 @@ std::string LogFile(const std::string& directory, std::string_view stem, std::st
   return InQuotes(literal ? path + ".log" : path.append(pattern).append(".log"));
 }
 
-// Whether the lines behind the directives are those of kRunJob.
-constexpr std::string_view kRun = "@RUN@";
-bool IsRun(std::string_view job_template) {
-  return job_template.find(kRun) != std::string_view::npos;
-}
-
 // Lines for what is asked for, in the order of the settings.
 Result<std::string> Directives(std::vector<std::pair<std::string, std::string>> wanted,
                                const Cluster& cluster) {
@@ -88,7 +93,7 @@ Result<std::string> Directives(std::vector<std::pair<std::string, std::string>> 
       return InvalidInput("a " + cluster.name + " option cannot hold a line break: '" + value + "'");
     if (name == "extra" && !value.starts_with("-"))
       return InvalidInput("slurm.extra has '" + value + "': give options as on the command line of " +
-                          ProgramOf(cluster.submit) + ", --exclusive");
+                          ProgramOf(cluster.submit, cluster) + ", --exclusive");
     const auto line = cluster.directives.find(name);
     if (line == cluster.directives.end() || line->second.empty())
       return InvalidInput("slurm." + name + " = " + value + ": " + cluster.name +
@@ -125,17 +130,14 @@ Result<std::string> Script(std::string_view job_template, Values values, const J
   for (const std::string& option : request.extra) wanted.emplace_back("extra", option);
   wanted.insert(wanted.end(), job.begin(), job.end());
   TRY(const auto seconds, ParseTimeLimit(request.time_limit));
-  if (IsRun(job_template)) {
-    values["SECONDS"] = std::to_string(seconds);
-    if (cluster.directives.contains("time_limit")) wanted.emplace_back("time_limit", values["SECONDS"]);
-  } else {
-    values["TIME"] = request.time_limit;
-  }
+  values["TIME"] = request.time_limit;
+  values["SECONDS"] = std::to_string(seconds);
+  if (cluster.directives.contains("time_limit")) wanted.emplace_back("time_limit", values["SECONDS"]);
   TRY(values["DIRECTIVES"], Directives(wanted, cluster));
   values["SETUP"] = request.setup;
   values["MARGIN"] = std::to_string(SignalMargin(seconds));
   TRY(CheckOneLine(values));
-  return Fill(Replaced(std::string(job_template), kRun, kRunJob), values);
+  return Fill(job_template, values);
 }
 
 }  // namespace
@@ -148,30 +150,26 @@ std::string Replaced(std::string text, std::string_view name, std::string_view v
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
                                  const JobRequest& request, const Cluster& cluster) {
   const std::string slots = std::to_string(job.slots);
-  const std::string array = job.array > 1 ? std::to_string(job.array) : "";
-  if (IsRun(job_template)) {
-    return Script(
-        job_template,
-        {{"JOB_NAME", job.name},
-         {"STEM", "worker"},
-         {"LOGS", ShellQuoted(job.log_directory)},
-         {"COMMAND", job.worker + " --access " + ShellQuoted(job.access_file) + " --slots " + slots +
-                         " --allocation \"$job:0:$(uname -n)\""}},
-        request,
-        {{"workers_per_allocation", job.slots > 1 && cluster.hosts.empty() ? slots : ""}, {"array", array}},
-        cluster);
-  }
-  // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
+  const std::string access = ShellQuoted(job.access_file);
   JobRequest all = request;
-  if (FillsNothingIn(job.log_directory)) all.extra.emplace_back("--open-mode=append");
+  if (!IsRun(job_template) && FillsNothingIn(job.log_directory)) all.extra.emplace_back("--open-mode=append");
+  const bool asks_for_cpus = IsRun(job_template) && job.slots > 1 && cluster.hosts.empty();
+  // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
   return Script(job_template,
                 {{"JOB_NAME", job.name},
+                 {"STEM", "worker"},
+                 {"LOGS", ShellQuoted(job.log_directory)},
+                 {"COMMAND", job.worker + " --access " + access + " --slots " + slots +
+                                 " --allocation \"$job:0:$(uname -n)\""},
                  {"CPUS", slots},
                  {"SLOTS", slots},
                  {"LOG", LogFile(job.log_directory, "worker", job.array > 1 ? "-%A_%a" : "-%j")},
-                 {"ACCESS", ShellQuoted(job.access_file)},
+                 {"ACCESS", access},
                  {"WORKER", job.worker}},
-                all, {{"array", array}}, cluster);
+                all,
+                {{"workers_per_allocation", asks_for_cpus ? slots : ""},
+                 {"array", job.array > 1 ? std::to_string(job.array) : ""}},
+                cluster);
 }
 
 Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
@@ -179,14 +177,14 @@ Result<std::string> MasterScript(std::string_view job_template, const MasterJob&
   std::string command;
   for (const std::string& argument : job.command)
     command += (command.empty() ? "" : " ") + ShellQuoted(argument);
-  Values values = {{"JOB_NAME", job.name}};
-  if (IsRun(job_template)) {
-    values.merge(
-        Values{{"STEM", "master-job"}, {"LOGS", ShellQuoted(job.log_directory)}, {"COMMAND", command}});
-  } else {
-    values.merge(Values{{"LOG", LogFile(job.log_directory, "master-job", "-%j")}, {"MASTER", command}});
-  }
-  return Script(job_template, values, request, {}, cluster);
+  return Script(job_template,
+                {{"JOB_NAME", job.name},
+                 {"STEM", "master-job"},
+                 {"LOGS", ShellQuoted(job.log_directory)},
+                 {"COMMAND", command},
+                 {"LOG", LogFile(job.log_directory, "master-job", "-%j")},
+                 {"MASTER", command}},
+                request, {}, cluster);
 }
 
 }  // namespace gauntlet::slurm

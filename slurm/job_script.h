@@ -43,8 +43,9 @@ std::string Replaced(std::string text, std::string_view name, std::string_view v
 // The shipped templates slurm/worker.sbatch and slurm/master.sbatch.
 extern const std::string_view kWorkerTemplate;
 extern const std::string_view kMasterTemplate;
+// slurm/run_job.sh, for which @RUN@ stands in the template of another cluster; it names the log by itself.
+extern const std::string_view kRunJob;
 
-// In a template of another cluster @RUN@ stands for slurm/run_job.sh, which names the log by itself.
 // Paths may hold whatever a name may hold except line breaks. The log's name has the job's id in it, unless a
 // directory's name has a backslash: Slurm then fills nothing in, and all jobs append to one file.
 // Errors: a value that cannot stand in a directive (a line break), a setting for which the cluster has no

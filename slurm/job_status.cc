@@ -42,10 +42,11 @@ bool NeverStarts(std::string_view word, const Cluster& cluster) {
   return std::ranges::find(cluster.never_starts, word) != cluster.never_starts.end();
 }
 
-std::string ProgramOf(const std::string& command) {
+std::string ProgramOf(const std::string& command, const Cluster& cluster) {
+  const std::string& line = cluster.hosts.empty() ? command : cluster.connect;
   static const std::regex kWord("[A-Za-z0-9_./-]+");
   std::smatch match;
-  return std::regex_search(command, match, kWord) ? match.str() : command;
+  return std::regex_search(line, match, kWord) ? match.str() : line;
 }
 
 Result<std::vector<JobStatus>> ParseQueue(std::string_view text, const Cluster& cluster) {
@@ -54,8 +55,9 @@ Result<std::vector<JobStatus>> ParseQueue(std::string_view text, const Cluster& 
     const std::string_view line = Trimmed(TakeUntil(text, '\n'));
     if (line.empty()) continue;
     if (std::ranges::count(line, '|') < std::ranges::count(kLookForm, '|'))
-      return Error{ErrorKind::kIo, ProgramOf(cluster.look) + " printed '" + std::string(line.substr(0, 200)) +
-                                       "', which is not of the form " + std::string(kLookForm)};
+      return Error{ErrorKind::kIo, ProgramOf(cluster.look, cluster) + " printed '" +
+                                       std::string(line.substr(0, 200)) + "', which is not of the form " +
+                                       std::string(kLookForm)};
     std::string_view rest = line;
     JobStatus job;
     job.id = Trimmed(TakeUntil(rest, '|'));
@@ -75,7 +77,7 @@ Result<std::string> ParseJobId(std::string_view text, const Cluster& cluster) {
   if (std::regex_search(text.data(), text.data() + text.size(), match, std::regex(cluster.job_id)) &&
       match.length(1) > 0)
     return match.str(1);
-  return Error{ErrorKind::kIo, ProgramOf(cluster.submit) + " answered '" +
+  return Error{ErrorKind::kIo, ProgramOf(cluster.submit, cluster) + " answered '" +
                                    std::string(Trimmed(text.substr(0, 200))) + "' instead of a job id"};
 }
 

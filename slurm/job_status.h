@@ -31,8 +31,8 @@ Result<std::vector<JobStatus>> ParseQueue(std::string_view text, const Cluster& 
 // The job's id in what `submit` answered. Error: quotes what has none.
 Result<std::string> ParseJobId(std::string_view text, const Cluster& cluster = SlurmCluster());
 
-// "squeue": the first word of a command, for messages.
-std::string ProgramOf(const std::string& command);
+// "squeue": the first word of a command, for messages; on hosts of what reaches them.
+std::string ProgramOf(const std::string& command, const Cluster& cluster);
 
 // "02:00:00", "1-00:00:00", "30" (minutes), "10:30" (minutes and seconds): a time limit as sbatch(1) takes
 // it, in seconds. Error: quotes it and says what would be right.

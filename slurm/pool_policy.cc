@@ -55,19 +55,20 @@ void PoolPolicy::Submitted(const std::string& job, TimePoint now) {
   last_query_ = now;
 }
 
-void PoolPolicy::SubmissionFailed(const std::string& message, TimePoint now) {
+void PoolPolicy::SubmissionFailed(const std::string& message, TimePoint now, ErrorKind kind) {
+  if (kind == ErrorKind::kInUse) {
+    full_ = message;
+    not_before_ = now + limits_.query_interval;
+    return;
+  }
+  NoteHopeless(message, kind);
   Allocation none;
   none.job = "(none)";
   StartFailed(none, message, now);
 }
 
-void PoolPolicy::Full(const std::string& message, TimePoint now) {
-  full_ = message;
-  not_before_ = now + limits_.query_interval;
-}
-
-void PoolPolicy::Hopeless(const std::string& message) {
-  if (cluster_.give_up_after > 0) hopeless_ = message;
+void PoolPolicy::NoteHopeless(const std::string& message, ErrorKind kind) {
+  if (kind == ErrorKind::kNotFound && cluster_.give_up_after > 0) hopeless_ = message;
 }
 
 std::string PoolPolicy::GivenUp() const {
@@ -101,7 +102,8 @@ void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
   }
 }
 
-void PoolPolicy::QueryFailed(const std::string& message, TimePoint now) {
+void PoolPolicy::QueryFailed(const std::string& message, TimePoint now, ErrorKind kind) {
+  NoteHopeless(message, kind);
   query_running_ = false;
   query_error_ = message;
   last_query_ = now;

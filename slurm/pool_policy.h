@@ -64,18 +64,15 @@ class PoolPolicy {
       : limits_(limits), cluster_(std::move(cluster)) {}
 
   void Submitted(const std::string& job, TimePoint now);
-  // The cluster refused, or did not answer.
-  void SubmissionFailed(const std::string& message, TimePoint now);
-  // There was no room: no failure, to be tried again.
-  void Full(const std::string& message, TimePoint now);
-  // Nothing can be submitted or looked at any more, until something is.
-  void Hopeless(const std::string& message);
+  // The cluster refused, or did not answer. kInUse: there was no room, which is no failure. kNotFound:
+  // nothing can be submitted any more, until something is.
+  void SubmissionFailed(const std::string& message, TimePoint now, ErrorKind kind = ErrorKind::kIo);
   // A job of an earlier master that is still there.
   void Adopt(const JobStatus& job, TimePoint now);
   // All jobs of this pool that the cluster knows. One that is missing twice in a row has ended.
   void Observed(const std::vector<JobStatus>& jobs, TimePoint now);
   // The cluster did not answer: what was known stands.
-  void QueryFailed(const std::string& message, TimePoint now);
+  void QueryFailed(const std::string& message, TimePoint now, ErrorKind kind = ErrorKind::kIo);
   // How many workers of the allocation are connected, and how many of them have a run.
   void Workers(const std::string& job, int connected, int busy, TimePoint now);
   // From now on nothing is submitted, and everything is cancelled.
@@ -93,6 +90,7 @@ class PoolPolicy {
  private:
   using Allocations = std::map<std::string, Allocation>;  // by job id
 
+  void NoteHopeless(const std::string& message, ErrorKind kind);
   void End(Allocations::iterator ended, TimePoint now);
   void StartFailed(Allocation& allocation, const std::string& what, TimePoint now);
   void CancelLost(TimePoint now, Decisions& decisions);

@@ -91,17 +91,15 @@ WorkerJob SlurmCampaign::WorkersJob() const {
           .slots = settings_.pool.workers_per_allocation};
 }
 
-std::string_view SlurmCampaign::ShippedTemplate(std::string_view of_slurm) const {
-  return cluster_.script == kSlurmScripts ? of_slurm : std::string_view(cluster_.script);
-}
-
 Status SlurmCampaign::MakeScripts() {
+  const bool of_slurm = cluster_.script == kSlurmScripts;
+  const std::string_view script = cluster_.script;
   TRY(worker_template_,
-      Template(settings_.worker_template, ShippedTemplate(kWorkerTemplate), "worker_template"));
+      Template(settings_.worker_template, of_slurm ? kWorkerTemplate : script, "worker_template"));
   TRY(worker_script_, WorkerScript(worker_template_, WorkersJob(), settings_.worker_job, cluster_));
 
   TRY(const auto master_template,
-      Template(settings_.master_template, ShippedTemplate(kMasterTemplate), "master_template"));
+      Template(settings_.master_template, of_slurm ? kMasterTemplate : script, "master_template"));
   // Of what the workers ask for, the master needs the account and the software.
   JobRequest request;
   request.account = settings_.worker_job.account;

@@ -46,7 +46,6 @@ class SlurmCampaign {
   SlurmCampaign(SlurmSettings settings, std::string directory);
   Status MakeScripts();
   WorkerJob WorkersJob() const;
-  std::string_view ShippedTemplate(std::string_view of_slurm) const;
 
   SlurmSettings settings_;
   Cluster cluster_;

@@ -32,9 +32,9 @@ class SlurmClient {
 };
 
 // What a person can do about a scheduler's words, as "; do this"; "" when nothing is known.
-std::string NextStep(std::string_view words, const Cluster& cluster = SlurmCluster());
+std::string NextStep(std::string_view message, const Cluster& cluster = SlurmCluster());
 
-// By the commands of a cluster.
+// By the commands of a cluster, of one with hosts on the first of them.
 class CommandLineSlurm final : public SlurmClient {
  public:
   // An absent controller costs a Slurm command about 9 s before it says so.
@@ -52,11 +52,5 @@ class CommandLineSlurm final : public SlurmClient {
   std::chrono::milliseconds deadline_;
   std::vector<std::string> submitted_;  // ids
 };
-
-// A command of a cluster, in bash: fails as the first program of a pipe that does. Error: kNotFound when
-// there is no such program.
-Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& command,
-                               const std::vector<std::string>& arguments, std::string_view input,
-                               std::chrono::milliseconds deadline);
 
 }  // namespace gauntlet::slurm

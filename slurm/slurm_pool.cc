@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 #include "base/check.h"
 #include "base/number_text.h"
@@ -129,11 +128,10 @@ void SlurmPool::CarryOut(const Decisions& decisions) {
 // The options of `exclude`, which stand apart by blanks.
 std::vector<std::string> SlurmPool::Exclusion(const std::vector<std::string>& nodes) const {
   std::vector<std::string> options;
-  if (nodes.empty()) return options;
-  std::istringstream words(options_.cluster.exclude);
-  for (std::string word; words >> word;)
-    options.push_back(
-        Replaced(word, "@NODES@", fmt::format("{}", fmt::join(nodes, options_.cluster.node_separator))));
+  if (!nodes.empty()) options = WordsOf(options_.cluster.exclude);
+  for (std::string& option : options)
+    option =
+        Replaced(option, "@NODES@", fmt::format("{}", fmt::join(nodes, options_.cluster.node_separator)));
   return options;
 }
 
@@ -159,9 +157,8 @@ void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excl
                            Counted(options_.job.slots, "slot")));
         return;
       }
-      if (id.error().kind == ErrorKind::kInUse) return policy_.Full(id.error().message, now);
-      if (id.error().kind == ErrorKind::kNotFound) policy_.Hopeless(id.error().message);
-      policy_.SubmissionFailed(id.error().message, now);
+      policy_.SubmissionFailed(id.error().message, now, id.error().kind);
+      if (id.error().kind == ErrorKind::kInUse) return;
       // It may have been accepted all the same: look before the next one.
       adopted_ = false;
     };
@@ -175,8 +172,7 @@ void SlurmPool::PostQuery() {
       if (jobs) {
         OnQueue(std::move(*jobs), now);
       } else {
-        policy_.QueryFailed(jobs.error().message, now);
-        if (jobs.error().kind == ErrorKind::kNotFound) policy_.Hopeless(jobs.error().message);
+        policy_.QueryFailed(jobs.error().message, now, jobs.error().kind);
       }
     };
   });

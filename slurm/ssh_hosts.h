@@ -1,25 +1,20 @@
-// Hosts without a scheduler: jobs are started, found and ended over ssh.
+// Hosts without a scheduler: the commands of the cluster start, find and end jobs on each of them.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "slurm/slurm_client.h"
 
 namespace gauntlet::slurm {
 
-// A job's first process leads a session and has the job's name in its environment (GAUNTLET_JOB); the id is
-// "PID.START@HOST": the process and the tick of the host's clock at which it started, so that a number that
-// was given again is no job of ours. Whatever it starts has the id in its environment (slurm/run_job.sh), and
-// the job lives as long as one of them. A host takes as many jobs of this user as
-// its slots hold. One that refuses (a wrong key, an unknown host key) is asked no more by this object; one
-// that does not answer is asked again, and until then has the jobs that it had. Thread-safety: one thread.
+// A job's id ends in "@HOST" (slurm/clusters/ssh.toml). A host takes as many jobs of this user as its slots
+// hold. One that refuses (a wrong key, an unknown host key) is asked no more by this object; one that does
+// not answer is asked again, and until then has the jobs that it had. Thread-safety: one thread.
 class SshHosts final : public SlurmClient {
  public:
-  SshHosts(Cluster cluster, int slots_per_job);
+  SshHosts(const Cluster& cluster, int slots_per_job);
 
   // Jobs that all hosts together take.
   int room() const;
@@ -27,27 +22,23 @@ class SshHosts final : public SlurmClient {
   Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override;
   // Asks all hosts at the same time. Error: none answers.
   Result<std::vector<JobStatus>> Queue(const std::string& name_prefix) override;
-  // SIGTERM, and half a minute later SIGKILL to what is left of the job.
   Status Cancel(const std::vector<std::string>& jobs) override;
 
  private:
   struct Host {
     std::string name;
     int most_jobs = 1;
+    CommandLineSlurm client;
     std::vector<JobStatus> jobs = {};  // of all campaigns, as it last said, and what was started since
-    bool looked = false;
-    std::string refusal = "";  // "" = it may be asked
-    std::string silence = "";  // why its last answer failed
+    std::string refusal = "";          // "" = it may be asked
+    std::string silence = "";          // why its last answer failed, "" = it did not
   };
 
-  using Variables = std::vector<std::pair<std::string, std::string>>;
-  Result<std::vector<std::string>> Ask(Host& host, const Variables& variables, std::string_view program);
-  void Look(Host& host);
-  Status SomeMayBeAsked() const;
-  std::string Troubles() const;
+  Status Ask(Host& host, const std::function<Status(CommandLineSlurm&)>& question);
+  Error Nobody(ErrorKind kind, std::string words) const;
 
-  Cluster cluster_;
   std::vector<Host> hosts_;
+  bool looked_ = false;
 };
 
 }  // namespace gauntlet::slurm

@@ -51,6 +51,13 @@ TEST(ReadCluster, BeginsWithAnotherAndChangesSomeRows) {
   EXPECT_EQ(PhaseOf("hibernates", *cluster), JobPhase::kUnknown) << "believed to live";
 }
 
+TEST(ReadCluster, AdvisesOnTheWordsOfItsScheduler) {
+  const Cluster lab = *ReadCluster("like = \"slurm\"\n[advice]\n\"no licence.\" = \"ask Ann\"\n", "lab.toml");
+  EXPECT_EQ(NextStep("sbatch refused: no licence.", lab), "; ask Ann");
+  EXPECT_THAT(NextStep("Invalid account", lab), HasSubstr("sacctmgr")) << "Slurm's stay";
+  EXPECT_EQ(NextStep("Invalid account", *FindCluster("pbs")), "");
+}
+
 TEST(ReadCluster, NeedsNothingButHosts) {
   const Result<Cluster> cluster = ReadCluster("hosts = [\"node7:16\", \"me@b.example.org\"]", "lab.toml");
   ASSERT_TRUE(cluster.ok()) << cluster.error().message;
@@ -91,8 +98,9 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
   EXPECT_EQ(ErrorOf("like = \"sge\"\ngive_up_after = -1"),
             "lab.toml:2:1: give_up_after = -1 is out of range, allowed 0 to 1000000");
   EXPECT_EQ(ErrorOf("like = \"sge\"\nhosts = [\"a\"]"),
-            "lab.toml: hosts have no scheduler: leave out hosts, or like and submit");
+            "lab.toml: hosts have no scheduler: leave out hosts, or like");
   EXPECT_EQ(ErrorOf("hosts = [\"a\"]\nlike = \"ssh\""), "");
+  EXPECT_THAT(ErrorOf("hosts = [\"a\"]\nconnect = ''"), HasSubstr("lab.toml: connect is missing"));
   EXPECT_EQ(ErrorOf("like = \"sge\"\ntask_id = ''\ndirectives.array = ''"), "") << "a site without arrays";
   EXPECT_EQ(ErrorOf("hosts = \"a\""), "lab.toml:1:1: hosts is text, expected a list of texts");
   for (const char* host : {"-oProxyCommand=x", "a:0", "a b", "a:b", ""})
@@ -141,7 +149,7 @@ TEST(ClusterScript, LeavesItsExitCodeWhateverEndsIt) {
     request.setup = before;
     const std::string script =
         *WorkerScript(ssh.script, AJob(logs.path(), "bash -c '" + worker + "' --"), request, ssh);
-    testing_support::RunProcess({"/usr/bin/env", "GAUNTLET_HOST=a", "/bin/bash", "-c", script});
+    testing_support::RunProcess({"/usr/bin/env", "GAUNTLET_BATCH_JOB=7", "/bin/bash", "-c", script});
     std::string codes;
     for (const auto& file : std::filesystem::directory_iterator(logs.path())) {
       if (file.path().extension() != ".exit") continue;
