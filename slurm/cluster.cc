@@ -89,8 +89,8 @@ Status AssignNamed(const Assignment& assignment, Cluster& cluster) {
     *text = std::get<std::string>(value);
     return Ok{};
   }
-  const auto list = std::ranges::find(kLists, path) - kLists.begin();
-  if (list == kLists.size()) return InvalidInput(fmt::format("{}: {}", assignment.where, UnknownKey(path)));
+  const auto* const list = std::ranges::find(kLists, path);
+  if (list == kLists.end()) return InvalidInput(fmt::format("{}: {}", assignment.where, UnknownKey(path)));
   const auto* value = std::get_if<OtherToml>(&assignment.value);
   if (value == nullptr || !value->texts)
     return InvalidInput(fmt::format("{}: {} is {}, expected a list of texts", assignment.where, path,
@@ -101,7 +101,7 @@ Status AssignNamed(const Assignment& assignment, Cluster& cluster) {
     cluster.never_starts = texts;
     return Ok{};
   }
-  const auto meant = static_cast<JobPhase>(list - kNotPhases);
+  const auto meant = static_cast<JobPhase>(list - kLists.begin() - kNotPhases);
   std::erase_if(cluster.states, [&](const auto& state) { return state.second == meant; });
   for (const std::string& state : texts) cluster.states[state] = meant;
   return Ok{};
