@@ -57,7 +57,8 @@ std::string* TextAt(std::string_view path, Cluster& cluster) {
   for (const auto& [name, member] : kTexts) {
     if (name == path) return &(cluster.*member);
   }
-  if (path.starts_with(kAdvice)) return &cluster.advice[std::string(path.substr(kAdvice.size()))];
+  if (path.starts_with(kAdvice) && path != kAdvice)
+    return &cluster.advice[std::string(path.substr(kAdvice.size()))];
   if (!path.starts_with(kDirectives)) return nullptr;
   path.remove_prefix(kDirectives.size());
   return std::ranges::count(kDirectiveNames, path) == 0 ? nullptr : &cluster.directives[std::string(path)];
@@ -75,6 +76,8 @@ Status SetHosts(const std::vector<std::string>& texts, const std::string& where,
     if (!std::regex_match(text, match, kForm))
       return InvalidInput(
           fmt::format("{}: hosts has '{}': give NAME or NAME:SLOTS, \"node7:16\"", where, text));
+    if (std::ranges::count(cluster.hosts, match.str(1), &ClusterHost::name) > 0)
+      return InvalidInput(fmt::format("{}: hosts has {} twice", where, match.str(1)));
     cluster.hosts.push_back({match.str(1), match[2].matched ? std::stoi(match.str(2)) : 1});
   }
   return Ok{};

@@ -42,35 +42,39 @@ bool IsOf(const std::string& job, const std::string& id) {
 // Around an answer: shells greet their users in many ways.
 constexpr std::string_view kBegin = "gauntlet:begin\n";
 constexpr std::string_view kEnd = "gauntlet:end\n";
+constexpr int kSshFailed = 255;  // ssh(1), exit status
 
 std::string OnHost(const std::string& host, const std::string& command,
                    const std::vector<std::string>& arguments, std::string_view input) {
   std::string run = "run";
   for (const std::string& argument : arguments) run += " " + ShellQuoted(argument);
-  return fmt::format("export GAUNTLET_HOST={}\nrun() {{\n{}\n}}\necho {}{} <<<{} && echo {}", host, command,
+  return fmt::format("export GAUNTLET_HOST={}\nrun() {{ :\n{}\n}}\necho {}{} <<<{} && echo {}", host, command,
                      kBegin, run, ShellQuoted(input), kEnd);
 }
 
-// What stands between the marks. Error: the line of OpenSSH that says that it is of no use to try again
-// (kNotFound), or the last line.
-Result<CallOutput> AnswerOfHost(const CallOutput& output) {
+// What stands between the marks. Error, where the command has begun: its last words, of kind `failure`; else
+// the line of OpenSSH that says that it is of no use to try again (kNotFound), or the last line.
+Result<CallOutput> AnswerOfHost(const CallOutput& output, ErrorKind failure) {
   constexpr std::array<std::string_view, 5> kRefusals = {
-      "Permission denied", "Host key verification failed", "Too many authentication failures",
+      "Permission denied (", "Host key verification failed", "Too many authentication failures",
       "No supported authentication methods", "Name or service not known"};
-  if (output.exit_code == 0 && output.out.find(kBegin) != std::string::npos && output.out.ends_with(kEnd)) {
-    const std::size_t begin = output.out.find(kBegin) + kBegin.size();
-    return CallOutput{.out = output.out.substr(begin, output.out.size() - kEnd.size() - begin)};
+  const std::size_t begin = output.out.rfind(kBegin);
+  const bool begun = begin != std::string::npos;
+  if (begun && output.exit_code == 0 && output.out.ends_with(kEnd)) {
+    const std::size_t size = output.out.size() - kEnd.size() - begin - kBegin.size();
+    return CallOutput{.out = output.out.substr(begin + kBegin.size(), size)};
   }
   std::string words = fmt::format("no answer, exit code {}", output.exit_code);
-  std::istringstream lines(output.out + "\n" + output.err);
+  std::istringstream lines(begun ? output.err : output.out + "\n" + output.err);
   for (std::string line; std::getline(lines, line);) {
     line = Trimmed(line);
     for (const std::string_view refusal : kRefusals) {
-      if (line.find(refusal) != std::string::npos) return Error{ErrorKind::kNotFound, line};
+      if (output.exit_code == kSshFailed && line.find(refusal) != std::string::npos)
+        return Error{ErrorKind::kNotFound, line};
     }
     if (!line.empty()) words = line;
   }
-  return Error{ErrorKind::kIo, words};
+  return Error{begun && output.exit_code != kSshFailed ? failure : ErrorKind::kIo, words};
 }
 
 // A command of a cluster in bash, where it has hosts on the one host: fails as the first program of a pipe
@@ -99,7 +103,7 @@ Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& comman
       (says(": command not found") || says(": No such file or directory")))
     return Error{ErrorKind::kNotFound,
                  "there is no " + program + " in PATH: is " + cluster.name + " installed on this machine?"};
-  if (!cluster.hosts.empty()) return AnswerOfHost(output);
+  if (!cluster.hosts.empty()) return AnswerOfHost(output, failure);
   if (output.exit_code == 0) return output;
   return Error{failure, fmt::format("{}{}: {}", program,
                                     failure == ErrorKind::kInvalidInput

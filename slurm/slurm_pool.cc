@@ -38,11 +38,14 @@ SlurmPool::~SlurmPool() {
   thread_.join();
 }
 
-// By name, so that a submission whose answer was lost goes too.
+// By name, so that a submission whose answer was lost goes too; without an answer at least those that are
+// known.
 void SlurmPool::PostCancelAll() {
-  Post([this]() -> std::function<void(TimePoint)> {
-    std::vector<std::string> living;
+  std::vector<std::string> known;
+  for (const Allocation& allocation : policy_.allocations()) known.push_back(allocation.job);
+  Post([this, living = known]() mutable -> std::function<void(TimePoint)> {
     if (const Result<std::vector<JobStatus>> jobs = client_->Queue(options_.job.name); jobs) {
+      living.clear();
       for (const JobStatus& job : *jobs) {
         if (job.phase != JobPhase::kEnded) living.push_back(job.id);
       }
@@ -158,8 +161,7 @@ void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excl
         return;
       }
       policy_.SubmissionFailed(id.error().message, now, id.error().kind);
-      if (id.error().kind == ErrorKind::kInUse) return;
-      // It may have been accepted all the same: look before the next one.
+      // It may have been accepted all the same, or there may be room again: look before the next one.
       adopted_ = false;
     };
   });

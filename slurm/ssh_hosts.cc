@@ -34,7 +34,9 @@ int SshHosts::room() const {
 Status SshHosts::Ask(Host& host, const std::function<Status(CommandLineSlurm&)>& question) {
   if (!host.refusal.empty()) return InvalidInput(host.refusal);
   Status answer = question(host.client);
-  host.silence = answer ? "" : answer.error().message;
+  // The host that refuses a job has answered.
+  const bool answered = answer || answer.error().kind == ErrorKind::kInvalidInput;
+  host.silence = answered ? "" : answer.error().message;
   if (!answer && answer.error().kind == ErrorKind::kNotFound) host.refusal = host.silence;
   return answer;
 }
@@ -68,6 +70,7 @@ Result<std::string> SshHosts::Submit(const std::string& script, const std::vecto
       TRY(job.id, client.Submit(script, options));
       return Ok{};
     });
+    if (!started && host->silence.empty()) return started.error();
     if (!started) continue;
     host->jobs.push_back(job);
     return job.id;

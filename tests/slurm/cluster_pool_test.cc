@@ -95,6 +95,28 @@ TEST_F(ClusterPoolTest, WhereNothingCanBeSubmittedItEndsAtOnceUnlessSomethingLiv
   EXPECT_EQ(why, "there is no qsub in PATH");
 }
 
+TEST_F(ClusterPoolTest, WhereThereWasNoRoomItLooksAgain) {
+  Begin("give_up_after = 1");
+  cluster_.full = "no host has room for another job";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Later(), "") << "no failed start";
+  EXPECT_EQ(pool_->Trouble(now_), "no host has room for another job");
+  const int looks = cluster_.queries;
+  EXPECT_EQ(Later(), "");
+  EXPECT_GT(cluster_.queries, looks) << "by which hosts are known to be free again";
+  cluster_.full = "";
+  EXPECT_EQ(Later(), "");
+  EXPECT_EQ(pool_->running(), 1);
+  EXPECT_EQ(pool_->Trouble(now_), "job 1 waits in the queue");
+}
+
+TEST_F(ClusterPoolTest, WithoutAnAnswerItCancelsWhatItKnows) {
+  Begin("");
+  EXPECT_EQ(Later(), "");
+  cluster_.controller_error = "no answer";
+  pool_.reset();
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1"));
+}
+
 TEST_F(ClusterPoolTest, WorkersAreKnownByJobsWhoseIdsHaveColons) {
   Begin("");
   cluster_.id_prefix = "lab:";

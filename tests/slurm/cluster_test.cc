@@ -102,6 +102,9 @@ TEST(ReadCluster, SaysWhatIsMissingOrWrong) {
   EXPECT_EQ(ErrorOf("hosts = [\"a\"]\nlike = \"ssh\""), "");
   EXPECT_THAT(ErrorOf("hosts = [\"a\"]\nconnect = ''"), HasSubstr("lab.toml: connect is missing"));
   EXPECT_EQ(ErrorOf("like = \"sge\"\ntask_id = ''\ndirectives.array = ''"), "") << "a site without arrays";
+  EXPECT_EQ(ErrorOf("hosts = [\"a\", \"a:3\"]"), "lab.toml:1:1: hosts has a twice");
+  EXPECT_THAT(ErrorOf("like = \"sge\"\n[advice]\n\"\" = \"x\""),
+              HasSubstr("unknown key of a cluster file 'advice.'"));
   EXPECT_EQ(ErrorOf("hosts = \"a\""), "lab.toml:1:1: hosts is text, expected a list of texts");
   for (const char* host : {"-oProxyCommand=x", "a:0", "a b", "a:b", ""})
     EXPECT_THAT(ErrorOf(std::string("hosts = [\"") + host + "\"]"), HasSubstr("give NAME or NAME:SLOTS"))

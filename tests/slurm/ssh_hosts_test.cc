@@ -26,7 +26,8 @@ class SshHostsTest : public testing::Test {
  protected:
   void SetUp() override {
     std::ofstream(scratch_ / "ssh") << "#!/bin/bash\ncd " << scratch_.path()
-                                    << "\necho \"$1\" >>calls\necho Welcome to $1\n"
+                                    << "\necho \"$1\" >>calls\n"
+                                       "echo Welcome to $1; echo gauntlet:begin; echo gauntlet:end\n"
                                        "if [ -e \"fail-$1\" ]; then cat \"fail-$1\" >&2; exit 255; fi\n"
                                        "if [ -e meet ]; then touch \"at-$1\"\n"
                                        "  for i in {1..500}; do [ $(ls at-* | wc -l) = 2 ] && break\n"
@@ -174,6 +175,47 @@ TEST_F(SshHostsTest, WhatAJobStartedBelongsToIt) {
   EXPECT_EQ(shown(), job + "\n") << "what is left of it";
   ASSERT_TRUE(hosts.Cancel({job}).ok());
   EXPECT_TRUE(testing_support::Eventually([&] { return shown().empty(); }, std::chrono::seconds(10)));
+}
+
+TEST_F(SshHostsTest, AJobThatEndsAtOnceWasStartedAllTheSame) {
+  SshHosts hosts(cluster_, 1);
+  const Result<std::string> job = hosts.Submit("#!/bin/bash\n# gauntlet-ab12-w1 \nexit 3\n", {});
+  EXPECT_THAT(*job, testing::EndsWith("@" + alpha_));
+  EXPECT_TRUE(
+      testing_support::Eventually([&] { return hosts.Queue("")->empty(); }, std::chrono::seconds(10)));
+}
+
+TEST_F(SshHostsTest, AScriptThatTheHostCannotTakeIsRefused) {
+  SshHosts hosts(cluster_, 1);
+  const Result<std::string> job = hosts.Submit(kScript + std::string(200'000, '#'), {});
+  EXPECT_EQ(job.error().kind, ErrorKind::kInvalidInput) << "a failed start";
+  EXPECT_THAT(job.error().message, HasSubstr("less than 131072"));
+  EXPECT_TRUE(hosts.Submit(kScript, {}).ok()) << "the host has answered";
+}
+
+TEST_F(SshHostsTest, ProcessesThatEndDuringALookDoNotMatter) {
+  SshHosts hosts(cluster_, 1);
+  const std::string busy = "#!/bin/bash\n# gauntlet-ab12-w1 \nwhile :; do env true & env true & wait; done\n";
+  const std::string job = *hosts.Submit(busy, {});
+  for (int i = 0; i < 20; ++i) {
+    const Result<std::vector<JobStatus>> jobs = hosts.Queue("");
+    ASSERT_TRUE(jobs.ok()) << jobs.error().message;
+    ASSERT_THAT(*jobs, SizeIs(1));
+    EXPECT_EQ(jobs->front().reason, "");
+  }
+}
+
+TEST_F(SshHostsTest, AGreetingIsNeitherARefusalNorAnAnswer) {
+  Fail(alpha_,
+       "bash: /etc/profile.d/x.sh: Permission denied\ngauntlet:begin\nConnection closed by 10.0.0.1 port 22");
+  SshHosts hosts(cluster_, 1);
+  EXPECT_TRUE(hosts.Queue("").ok());
+  ASSERT_TRUE(hosts.Submit(kScript, {}).ok());
+  EXPECT_THAT(hosts.Submit(kScript, {}).error().message,
+              HasSubstr(alpha_ + " does not answer: Connection closed by 10.0.0.1 port 22"));
+  Mend(alpha_);
+  ASSERT_TRUE(hosts.Queue("").ok());
+  EXPECT_THAT(*hosts.Submit(kScript, {}), HasSubstr("@" + alpha_));
 }
 
 TEST_F(SshHostsTest, ManyKeysAreARefusalAndANameServerThatIsAwayIsNot) {

@@ -25,6 +25,7 @@ class FakeSlurm {
   int next_id = 1;
   std::string refusal;   // of the next submissions and tests; "" = accepted
   std::string hopeless;  // likewise, for ever
+  std::string full;      // likewise, for want of room
   std::string id_prefix;
   bool loses_answers = false;    // accepts, but the answer does not arrive
   bool deaf = false;             // cancellations do not arrive
@@ -60,6 +61,7 @@ class FakeSlurm {
                                const std::vector<std::string>& arguments) override {
       const std::lock_guard lock(cluster_.mutex_);
       if (!cluster_.refusal.empty()) return InvalidInput(cluster_.refusal);
+      if (!cluster_.full.empty()) return Error{ErrorKind::kInUse, cluster_.full};
       if (!cluster_.hopeless.empty()) return Error{ErrorKind::kNotFound, cluster_.hopeless};
       cluster_.submitted.push_back(script);
       cluster_.options.push_back(arguments);
