@@ -9,6 +9,7 @@
 
 #include "base/shell_quoted.h"
 #include "base/split.h"
+#include "slurm/job_script.h"
 
 namespace gauntlet::slurm {
 namespace {
@@ -96,7 +97,9 @@ Result<CallOutput> CallCluster(const Cluster& cluster, const std::string& comman
                                    "pipefail",  "-c",     cluster.hosts.empty() ? command : cluster.connect,
                                    program};
   line.insert(line.end(), arguments.begin(), arguments.end());
-  TRY(const CallOutput output, CallProcess(line, text, options));
+  const Result<CallOutput> call = CallProcess(line, text, options);
+  if (!call) return Error{call.error().kind, Replaced(call.error().message, line.front(), program)};
+  const CallOutput& output = *call;
   const auto says = [&](const char* what) { return output.err.find(program + what) != std::string::npos; };
   constexpr int kNoSuchProgram = 127;
   if (output.exit_code == kNoSuchProgram &&

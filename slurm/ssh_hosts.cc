@@ -11,18 +11,16 @@ namespace {
 
 constexpr std::chrono::seconds kDeadline{60};
 
-Cluster OnlyHost(Cluster cluster, const ClusterHost& host) {
-  cluster.hosts = {host};
-  return cluster;
-}
-
 }  // namespace
 
 SshHosts::SshHosts(const Cluster& cluster, int slots_per_job) {
-  for (const ClusterHost& host : cluster.hosts)
+  for (const ClusterHost& host : cluster.hosts) {
+    Cluster alone = cluster;
+    alone.hosts = {host};
     hosts_.push_back({.name = host.name,
                       .most_jobs = std::max(1, host.slots / std::max(1, slots_per_job)),
-                      .client = CommandLineSlurm(OnlyHost(cluster, host), kDeadline)});
+                      .client = CommandLineSlurm(alone, kDeadline)});
+  }
 }
 
 int SshHosts::room() const {
