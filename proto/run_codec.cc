@@ -88,13 +88,16 @@ void ToProto(const sim::Parameters& parameters, Repeated& message) {
   }
 }
 
-void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
+// The fields before the seed, and those after it: a message is written in the order of their numbers.
+void HeadToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   ToProto(spec.test_case, *message.mutable_test_case());
   message.set_scenario(spec.scenario);
   ToProto(spec.scenario_parameters, *message.mutable_scenario_parameters());
   message.set_controller(spec.controller);
   ToProto(spec.controller_parameters, *message.mutable_controller_parameters());
-  message.set_seed(spec.seed);
+}
+
+void TailToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   message.set_record_trajectory(spec.record_trajectory);
   if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
   if (spec.physics == sim::PhysicsKind::kImpulse) message.set_physics(v1::PHYSICS_IMPULSE);
@@ -280,18 +283,29 @@ sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) 
 
 std::string EncodeRunSpec(const sim::RunSpec& spec) {
   v1::RunSpec message;
-  ToProto(spec, message);
+  HeadToProto(spec, message);
+  message.set_seed(spec.seed);
+  TailToProto(spec, message);
   return message.SerializeAsString();
 }
 
-SeededSpecs::SeededSpecs(const sim::RunSpec& spec) : message_(std::make_unique<v1::RunSpec>()) {
-  ToProto(spec, *message_);
+SeededSpecs::SeededSpecs(const sim::RunSpec& spec) {
+  v1::RunSpec head;
+  HeadToProto(spec, head);
+  head_ = head.SerializeAsString();
+  v1::RunSpec tail;
+  TailToProto(spec, tail);
+  tail_ = tail.SerializeAsString();
 }
-SeededSpecs::~SeededSpecs() = default;
 
-std::string SeededSpecs::Encode(std::uint64_t seed) {
-  message_->set_seed(seed);
-  return message_->SerializeAsString();
+std::string SeededSpecs::Encode(std::uint64_t seed) const {
+  v1::RunSpec seeded;
+  seeded.set_seed(seed);
+  std::string bytes;
+  bytes.reserve(head_.size() + seeded.ByteSizeLong() + tail_.size());
+  bytes += head_;
+  seeded.AppendToString(&bytes);
+  return bytes += tail_;
 }
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {

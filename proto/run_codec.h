@@ -3,17 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
-
-namespace gauntlet::v1 {
-class RunSpec;
-}
 
 namespace gauntlet::proto {
 
@@ -26,17 +21,17 @@ inline constexpr std::size_t kMaxNameBytes = 4'096;
 // Equal specs give equal bytes: the message has neither maps nor unknown fields.
 std::string EncodeRunSpec(const sim::RunSpec& spec);
 
-// EncodeRunSpec of specs that differ in their seed only: all else is translated once.
+// EncodeRunSpec of specs that differ in their seed only: all else is written once.
 class SeededSpecs {
  public:
   explicit SeededSpecs(const sim::RunSpec& spec);
-  SeededSpecs(const SeededSpecs&) = delete;
-  SeededSpecs& operator=(const SeededSpecs&) = delete;
-  ~SeededSpecs();
-  std::string Encode(std::uint64_t seed);
+  std::string Encode(std::uint64_t seed) const;
+  // What all of them begin with, nearly the whole.
+  std::string_view head() const { return head_; }
 
  private:
-  std::unique_ptr<v1::RunSpec> message_;
+  std::string head_;
+  std::string tail_;
 };
 
 // Error (kCorrupt): not a RunSpec, too large, a number that is not finite, a parameter given twice, or fields

@@ -49,7 +49,9 @@ Status SearchDriver::Ask() {
   for (EvaluationRequest& request : parts_.search.Ask()) {
     PendingEvaluation evaluation;
     const double length = PredictedLength(request);
-    proto::SeededSpecs specs(SpecOfRun(parts_.plan.experiment, request, 0));
+    const proto::SeededSpecs specs(SpecOfRun(parts_.plan.experiment, request, 0));
+    Fnv1a64 of_head;
+    of_head.AddBytes(specs.head());
     evaluation.runs.reserve(request.replicates);
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
@@ -61,7 +63,7 @@ Status SearchDriver::Ask() {
       run.generation = request.generation;
       run.seed = RunSeed(parts_.plan.experiment, request, replicate);
       run.spec = specs.Encode(run.seed);
-      run.spec_hash = SpecHash(run.spec);
+      run.spec_hash = SpecHash(std::string_view(run.spec).substr(specs.head().size()), of_head);
 
       const auto stored = stored_ahead_.find(run.id);
       if (stored == stored_ahead_.end()) {

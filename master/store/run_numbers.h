@@ -34,11 +34,10 @@ inline std::uint64_t SequenceOf(RunId run) {
   return run & ((1ULL << kSequenceBits) - 1);
 }
 
-// StoredRun::spec_hash of a serialized RunSpec.
-inline std::uint64_t SpecHash(std::string_view spec) {
-  Fnv1a64 hash;
-  hash.AddBytes(spec);
-  return hash.value();
+// StoredRun::spec_hash of a serialized RunSpec; `of_head`, where the hash of what it begins with is known.
+inline std::uint64_t SpecHash(std::string_view rest, Fnv1a64 of_head = {}) {
+  of_head.AddBytes(rest);
+  return of_head.value();
 }
 
 }  // namespace gauntlet

@@ -65,10 +65,11 @@ RC_GTEST_PROP(RunCodecProperty, CasesOfAllKindsOfGenesSurviveFilesAndSpecs, ()) 
 
 TEST(RunCodecTest, SeededSpecsHaveTheBytesOfWholeOnes) {
   sim::RunSpec spec = SampleSpec();
-  SeededSpecs specs(spec);
+  const SeededSpecs specs(spec);
   for (const std::uint64_t seed : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{5}}) {
     spec.seed = seed;
     EXPECT_EQ(specs.Encode(seed), EncodeRunSpec(spec)) << seed;
+    EXPECT_TRUE(specs.Encode(seed).starts_with(specs.head()));
   }
 }
 
