@@ -21,7 +21,7 @@ bool IsRun(std::string_view job_template) {
 
 // What a template need not name: the margin, and what @RUN@ names or all of Slurm's templates name instead.
 bool IsOptional(std::string_view name, bool run) {
-  using Names = std::initializer_list<std::string_view>;
+  using Names = std::vector<std::string_view>;
   const Names others = run ? Names{"CPUS", "SLOTS", "LOG", "ACCESS", "WORKER", "MASTER", "TIME"}
                            : Names{"STEM", "LOGS", "COMMAND", "SECONDS"};
   return name == "MARGIN" || std::ranges::count(others, name) > 0;
