@@ -166,7 +166,11 @@ TEST(ClusterScript, LeavesItsExitCodeWhateverEndsIt) {
   EXPECT_EQ(run("exit 2", "1", ""), "2\n");
   EXPECT_EQ(run("kill -9 $$", "1", ""), "137\n");
   EXPECT_EQ(run("trap \"exit 5\" TERM; sleep 60 & wait", "0:02", ""), "5\n") << "told at the time limit";
-  EXPECT_EQ(run("trap \"exit 6\" TERM; kill -USR2 $PARENT; sleep 60 & wait", "1", "export PARENT=$$"), "6\n")
+  // timeout(1) that is told before it waits for its child leaves the child alone.
+  const std::string waits = "until grep -q \"^State:.S\" /proc/$PPID/status; do :; done; ";
+  EXPECT_EQ(
+      run("trap \"exit 6\" TERM; " + waits + "kill -USR2 $PARENT; sleep 60 & wait", "1", "export PARENT=$$"),
+      "6\n")
       << "as Grid Engine tells it";
 }
 
