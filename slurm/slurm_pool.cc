@@ -43,7 +43,7 @@ SlurmPool::~SlurmPool() {
 void SlurmPool::PostCancelAll() {
   std::vector<std::string> known;
   for (const Allocation& allocation : policy_.allocations()) known.push_back(allocation.job);
-  Post([this, living = known]() mutable -> std::function<void(TimePoint)> {
+  Post([this, living = std::move(known)]() mutable -> std::function<void(TimePoint)> {
     if (const Result<std::vector<JobStatus>> jobs = client_->Queue(options_.job.name); jobs) {
       living.clear();
       for (const JobStatus& job : *jobs) {

@@ -30,26 +30,25 @@ int SshHosts::room() const {
 }
 
 Status SshHosts::Ask(Host& host, const std::function<Status(CommandLineSlurm&)>& question) {
-  if (!host.refusal.empty()) return InvalidInput(host.refusal);
+  if (host.out) return InvalidInput(host.silence);
   Status answer = question(host.client);
   // The host that refuses a job has answered.
   const bool answered = answer || answer.error().kind == ErrorKind::kInvalidInput;
   host.silence = answered ? "" : answer.error().message;
-  if (!answer && answer.error().kind == ErrorKind::kNotFound) host.refusal = host.silence;
+  host.out = !answer && answer.error().kind == ErrorKind::kNotFound;
   return answer;
 }
 
 // Says too what is wrong with which hosts; where all have refused, that none can be used (kNotFound).
 Error SshHosts::Nobody(ErrorKind kind, std::string words) const {
-  if (std::ranges::none_of(hosts_, [](const Host& host) { return host.refusal.empty(); })) {
+  if (std::ranges::all_of(hosts_, &Host::out)) {
     kind = ErrorKind::kNotFound;
     words = "no host can be used";
   }
   for (const Host& host : hosts_) {
     if (host.silence.empty()) continue;
     words += fmt::format("; {} {}: {}", host.name,
-                         host.refusal.empty() ? "does not answer" : "is out until `gauntlet resume`",
-                         host.silence);
+                         host.out ? "is out until `gauntlet resume`" : "does not answer", host.silence);
   }
   return {kind, words};
 }

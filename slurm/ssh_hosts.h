@@ -30,8 +30,8 @@ class SshHosts final : public SlurmClient {
     int most_jobs = 1;
     CommandLineSlurm client;
     std::vector<JobStatus> jobs = {};  // of all campaigns, as it last said, and what was started since
-    std::string refusal = "";          // "" = it may be asked
     std::string silence = "";          // why its last answer failed, "" = it did not
+    bool out = false;                  // that was a refusal: it is asked no more
   };
 
   Status Ask(Host& host, const std::function<Status(CommandLineSlurm&)>& question);
