@@ -35,4 +35,9 @@ std::string Printable(std::string_view text) {
   return out;
 }
 
+Error Printable(Error error) {
+  error.message = Printable(error.message);
+  return error;
+}
+
 }  // namespace gauntlet

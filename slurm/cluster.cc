@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/printable.h"
 #include "base/system/regular_file.h"
 #include "search/experiment/key_assignment.h"
 
@@ -188,9 +189,10 @@ Status Check(Cluster cluster) {
 }  // namespace
 
 Result<Cluster> ReadCluster(std::string_view text, const std::string& file_name) {
-  TRY(Cluster cluster, Parse(text, file_name));
-  if (const Status complete = Check(cluster); !complete)
-    return InvalidInput(fmt::format("{}: {}", file_name, complete.error().message));
+  Result<Cluster> cluster = Parse(text, file_name);
+  if (!cluster) return Printable(cluster.error());
+  if (const Status complete = Check(*cluster); !complete)
+    return Printable(InvalidInput(fmt::format("{}: {}", file_name, complete.error().message)));
   return cluster;
 }
 

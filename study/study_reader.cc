@@ -45,6 +45,13 @@ class Reader {
   }
 
   Result<Study> Read(const std::string& main_file) {
+    Result<Study> study = ReadFrom(main_file);
+    if (!study) return Printable(study.error());
+    return study;
+  }
+
+ private:
+  Result<Study> ReadFrom(const std::string& main_file) {
     study_.main_file = main_file;
     TRY(ReadFile(main_file, /*main=*/true));
     if (study_.name.empty()) return InvalidInput(main_file + ": the study has no name");
@@ -52,7 +59,7 @@ class Reader {
       return InvalidInput(
           fmt::format("{}: name = \"{}\" is no good folder name: use up to {} letters, digits, '.', '_' "
                       "or '-', and begin with none of '.' and '-'",
-                      main_file, Printable(study_.name), kMostNameBytes));
+                      main_file, study_.name, kMostNameBytes));
     }
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
     TRY(CheckAnalyses());
@@ -72,7 +79,6 @@ class Reader {
     return std::move(study_);
   }
 
- private:
   Status ReadFile(const std::string& file, bool main) {
     if (study_.texts.contains(file)) return InvalidInput(fmt::format("{} is included twice", file));
     TRY(auto text, read_(file));

@@ -6,7 +6,9 @@
 
 #include "base/check.h"
 #include "controllers/generic/definition.h"
+#include "controllers/requirements/requirements.h"
 #include "controllers/rows/row_checks.h"
+#include "master/store/packing.h"
 #include "proto/access_file.h"
 #include "proto/case_json.h"
 #include "proto/json_text.h"
@@ -14,11 +16,14 @@
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
 #include "search/cases/argos_controllers.h"
+#include "search/cases/argos_template.h"
 #include "search/cases/case_file.h"
 #include "search/cases/corpus_file.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
+#include "slurm/cluster.h"
 #include "study/streams/evaluation_line.h"
+#include "study/study.h"
 
 namespace gauntlet::fuzz {
 namespace {
@@ -105,6 +110,13 @@ void ReadCorpusCase(std::string_view bytes) {
 void ReadArgos(std::string_view bytes) {
   const auto controllers = ReadArgosControllers(std::string(bytes), "case.argos", "");
   if (!controllers) ExpectAGoodError(controllers);
+  const Result<ArgosTemplate> project = MakeArgosTemplate(std::string(bytes), "project.argos", {});
+  if (!project) {
+    ExpectAGoodError(project);
+  } else {
+    (void)WithWorld(project->text, "world.xml");
+    (void)WithoutRecorder(project->text);
+  }
   const Result<LoadedCase> read = ParseArgos(std::string(bytes), "case.argos");
   if (!read) return ExpectAGoodError(read);
   for (const sim::ObstacleGene& obstacle : read->test_case.obstacles) {
@@ -169,10 +181,40 @@ void ReadLine(std::string_view bytes) {
                  "a line does not survive: " + line->content);
 }
 
+// Specs and results lie packed in the database of a campaign, which may be another user's.
+void ReadPacked(std::string_view bytes) {
+  Packing packing;
+  packing.Learn("what specs have in common, parameter after parameter, obstacle after obstacle");
+  const Result<std::string> unpacked = packing.Unpack(bytes);
+  if (!unpacked) return ExpectAGoodError(unpacked);
+  for (int times = 0; times < 2; ++times) {  // compressed, then as what was packed before
+    const Result<std::string> again = packing.Unpack(packing.Pack(*unpacked));
+    GAUNTLET_CHECK(again.ok() && *again == *unpacked, "packed bytes do not survive");
+  }
+}
+
+// The requirements of an experiment come with the spec of a run.
+void ReadRequirements(std::string_view bytes) {
+  const auto& metrics = controllers::FindScenario("flocking")->metrics;
+  const auto read = controllers::requirements::Requirements::Parse(bytes, metrics);
+  if (!read) return ExpectAGoodError(read);
+  if (const Status complete = read->Check(); !complete) return ExpectAGoodError(complete);
+  GAUNTLET_CHECK(!read->Metrics().empty(), "requirements of which a run reports nothing");
+}
+
+void ReadCluster(std::string_view bytes) {
+  if (const auto read = slurm::ReadCluster(bytes, "cluster.toml"); !read) ExpectAGoodError(read);
+}
+
+void ReadAStudy(std::string_view bytes) {
+  if (const auto read = ReadStudy({{"study.toml", std::string(bytes)}}, "study.toml"); !read)
+    ExpectAGoodError(read);
+}
+
 }  // namespace
 
 std::span<const Parser> Parsers() {
-  static const std::array<Parser, 11> parsers{{{"wire", ReadWire},
+  static const std::array<Parser, 15> parsers{{{"wire", ReadWire},
                                                {"run", ReadRun},
                                                {"case_json", ReadCaseJson},
                                                {"corpus_case", ReadCorpusCase},
@@ -182,7 +224,11 @@ std::span<const Parser> Parsers() {
                                                {"access", ReadAccessFile},
                                                {"plugin", ReadPlugin},
                                                {"beginning", ReadBeginning},
-                                               {"line", ReadLine}}};
+                                               {"line", ReadLine},
+                                               {"packed", ReadPacked},
+                                               {"requirements", ReadRequirements},
+                                               {"cluster", ReadCluster},
+                                               {"study", ReadAStudy}}};
   return parsers;
 }
 
