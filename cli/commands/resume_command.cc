@@ -81,11 +81,13 @@ Result<ExitCode> ResumeSubmitted(CommandContext& context, const ResumeOptions& o
     const StopSignal handlers;
     return Extend(context, options);
   }();
-  if (!extended) {
-    if (!StopSignal::Requested()) return extended.error();
-    PrintMessage(context, extended.error().message);
+  if (StopSignal::Requested()) {
+    PrintMessage(context, extended.ok()
+                              ? fmt::format("{} was told to stop before it went on", options.directory)
+                              : extended.error().message);
     return kExitStopped;
   }
+  TRY(extended);
   if (options.as_job)
     return ServeSubmitted(context, options.running, options.directory, campaign, JobOfThisProcess());
   if (campaign.settings().master == slurm::MasterPlace::kHere)

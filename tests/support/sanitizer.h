@@ -3,8 +3,11 @@
 // 2009).
 #pragma once
 
+// g++ defines macros, clang answers.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define GAUNTLET_SANITIZED 1
+#elif defined(__has_feature)
+#define GAUNTLET_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
 #else
 #define GAUNTLET_SANITIZED 0
 #endif
