@@ -24,6 +24,8 @@ constexpr std::size_t kWhereBytes = sizeof(std::uint32_t);
 constexpr std::size_t kChangeHead = 1 + kWhereBytes + 1;
 // Replicates differ in their seed, of eight bytes.
 constexpr std::size_t kMostChanged = 16;
+// Longer than any spec: results with trajectories are no use to remember.
+constexpr std::size_t kMostRemembered = 64U << 10;
 static_assert(std::endian::native == std::endian::little);
 
 // Zstandard's fastest that does not pack much less. Level 3, its default, makes results 1 to 4 % smaller
@@ -67,6 +69,7 @@ void Packing::Learn(std::string_view example) {
 
 std::string Packing::Pack(std::string_view bytes) {
   if (bytes.size() < kFewestBytes) return kPlain + std::string(bytes);
+  if (bytes.size() > kMostRemembered) return PackWhole(bytes);
   for (const Packed& before : before_) {
     if (std::string changed = PackChanged(bytes, before); !changed.empty()) return changed;
   }
@@ -76,7 +79,7 @@ std::string Packing::Pack(std::string_view bytes) {
 }
 
 std::string Packing::PackChanged(std::string_view bytes, const Packed& before) {
-  if (bytes.size() != before.bytes.size() || bytes.size() > UINT32_MAX) return {};
+  if (bytes.size() != before.bytes.size()) return {};
   const auto from = std::mismatch(bytes.begin(), bytes.end(), before.bytes.begin()).first - bytes.begin();
   const std::string_view rest = bytes.substr(static_cast<std::size_t>(from));
   const auto same = std::mismatch(rest.rbegin(), rest.rend(), before.bytes.rbegin()).first - rest.rbegin();
