@@ -95,14 +95,13 @@ bool InCommand(std::string_view path) {
 
 Result<std::optional<controllers::command::Definition>> ReadCommand(const ExperimentText& experiment,
                                                                     const std::vector<std::string>& sets) {
-  const auto printable = [](const Error& error) { return Error{error.kind, Printable(error.message)}; };
   Result<std::vector<Assignment>> assignments = ReadToml(experiment.text, experiment.file_name);
-  if (!assignments) return printable(assignments.error());
+  if (!assignments) return Printable(assignments.error());
   if (std::ranges::none_of(*assignments, InCommand, &Assignment::path))
     return std::optional<controllers::command::Definition>();
   for (const std::string& set : sets) {
     Result<Assignment> assignment = ReadSet(set);
-    if (!assignment) return printable(assignment.error());
+    if (!assignment) return Printable(assignment.error());
     assignments->push_back(std::move(*assignment));
   }
   json table = json::object();
@@ -117,11 +116,11 @@ Result<std::optional<controllers::command::Definition>> ReadCommand(const Experi
     if (const Status put =
             Put(table, std::string_view(assignment.path).substr(kInCommand.size()), std::move(*value));
         !put)
-      return InvalidInput(Printable(fmt::format("{}: {}", where, put.error().message)));
+      return Printable(InvalidInput(fmt::format("{}: {}", where, put.error().message)));
   }
   controllers::command::ReadDefinition read = controllers::command::Read(table);
   if (!read.complaint) return std::optional(std::move(read.definition));
-  return InvalidInput(Printable(fmt::format(
+  return Printable(InvalidInput(fmt::format(
       "{}: {}", PlaceOf(*assignments, read.complaint->path, experiment.file_name), read.complaint->what)));
 }
 

@@ -255,16 +255,15 @@ class Reader {
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
                                    const std::vector<std::string>& sets, const Catalogue& catalogue) {
   // Messages quote what was written there.
-  const auto printable = [](const Error& error) { return Error{error.kind, Printable(error.message)}; };
   Result<std::vector<Assignment>> assignments = ReadToml(text, file_name);
-  if (!assignments.ok()) return printable(assignments.error());
+  if (!assignments.ok()) return Printable(assignments.error());
   for (const std::string& set : sets) {
     Result<Assignment> assignment = ReadSet(set);
-    if (!assignment.ok()) return printable(assignment.error());
+    if (!assignment.ok()) return Printable(assignment.error());
     assignments->push_back(std::move(*assignment));
   }
   Result<Experiment> experiment = Reader(std::move(*assignments), file_name, catalogue).Read();
-  if (!experiment.ok()) return printable(experiment.error());
+  if (!experiment.ok()) return Printable(experiment.error());
   return experiment;
 }
 
@@ -276,7 +275,7 @@ std::string PluginFileIn(const std::string& folder, const std::string& hash) {
 
 Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment) {
   const Result<std::vector<Assignment>> assignments = ReadToml(experiment.text, experiment.file_name);
-  if (!assignments) return Error{assignments.error().kind, Printable(assignments.error().message)};
+  if (!assignments) return Printable(assignments.error());
   const std::filesystem::path folder = std::filesystem::path(experiment.file_name).parent_path();
   std::vector<std::string> files;
   const bool is_command = std::ranges::any_of(*assignments, [](const Assignment& assignment) {

@@ -9,7 +9,6 @@
 
 #include "base/key.h"
 #include "base/number_text.h"
-#include "base/printable.h"
 #include "base/utf8.h"
 
 namespace gauntlet {
@@ -171,8 +170,8 @@ Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::strin
     Flatten(toml::parse(text), "", file_name, located);
   } catch (const toml::parse_error& error) {
     const toml::source_position position = error.source().begin;
-    return InvalidInput(fmt::format("{}:{}:{}: {}", file_name, position.line, position.column,
-                                    Printable(error.description())));
+    return InvalidInput(
+        fmt::format("{}:{}:{}: {}", file_name, position.line, position.column, error.description()));
   }
   // The library's tables are ordered by name; the first error to report is the first of the file.
   std::stable_sort(located.begin(), located.end(),

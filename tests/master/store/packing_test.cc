@@ -89,7 +89,7 @@ TEST(PackingTest, OtherBytesAreRefused) {
         std::string("e\x28\xb5\x2f\xfd\xe0\0\0\0\0\0\1\0\0", 14),  //
         std::string("c"), changed(0, 1, ""), changed(0, 1, "X"),
         changed(0, 17, std::string(17, 'X') + "pabc"), changed(3, 1, "Xpabc"),
-        changed(UINT32_MAX, 1, "Xpabc"), changed(0, 4, "XXXXpabc"),
+        changed(UINT32_MAX, 1, "Xpabc"), changed(0, 4, "ABCDpabc"),
         changed(0, 1, "X" + changed(0, 1, "Ypabc")), changed(0, 1, "Xx123")}) {
     const Result<std::string> back = packing.Unpack(bytes);
     ASSERT_FALSE(back.ok());
