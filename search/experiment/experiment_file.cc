@@ -100,7 +100,16 @@ class Reader {
       return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where, path,
                                       example, KindOf(assignment.value)));
     }
-    return InvalidInput(fmt::format("{}: unknown key '{}'; {}", assignment.where, path, HintFor(path)));
+    if (path == "search.mode") {
+      return InvalidInput(
+          fmt::format("{}: unknown key '{}'; write search.algorithm = \"steady-state\" or \"genetic\"",
+                      assignment.where, path));
+    }
+    std::vector<std::string_view> known;
+    for (const Key& key : keys_) known.push_back(key.path);
+    known.insert(known.end(),
+                 {kPluginsKey, "conditions.KEY", "requirements.NAME", "generic.KEY", "command.KEY"});
+    return InvalidInput(fmt::format("{}: {}", assignment.where, gauntlet::UnknownKey(path, known)));
   }
 
   // The libraries are given to the catalogue by who has read their names (PluginFilesOf).
@@ -121,31 +130,6 @@ class Reader {
       if (key.path.starts_with(table + ".")) return key.path;
     }
     return table == "scenario_parameters" || table == "controller_parameters" ? table + ".NAME" : "";
-  }
-
-  // "did you mean ...?", or the keys that could have been meant.
-  std::string HintFor(const std::string& path) const {
-    if (path == "search.mode") return "write search.algorithm = \"steady-state\" or \"genetic\"";
-    const std::size_t dot = path.find('.');
-    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot + 1);
-    const std::string name = path.substr(table.size());
-    std::vector<std::string_view> paths;
-    std::vector<std::string_view> siblings;  // names in the same table
-    std::string siblings_text;
-    std::string same_name;  // in another table
-    for (const Key& key : keys_) {
-      paths.push_back(key.path);
-      if (key.path.ends_with("." + name)) same_name = key.path;
-      if (table.empty() || !key.path.starts_with(table)) continue;
-      siblings.push_back(std::string_view(key.path).substr(table.size()));
-      siblings_text += (siblings_text.empty() ? "known: " : ", ") + key.path;
-    }
-    std::string nearest = same_name;
-    if (nearest.empty() && siblings.empty()) nearest = NearestName(path, paths);
-    if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
-    if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
-    if (!siblings_text.empty()) return siblings_text;
-    return "known at the top: name, description, seed, scenario, controller, physics, faults, plugins";
   }
 
   // Looks scenario and controller up and adds the keys of their parameters, with defaults.

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
+#include "base/nearest_name.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 
 namespace gauntlet {
 namespace {
@@ -61,6 +64,38 @@ std::optional<KeyValue> Convert(const KeyInfo& key, const Assignment& assignment
   return std::nullopt;
 }
 
+// Of the last part of a path ("noise.wheels.gaussian": "gaussian").
+bool IsNamed(std::string_view path, std::string_view name) {
+  return path.ends_with(name) && path.size() > name.size() && path[path.size() - name.size() - 1] == '.';
+}
+
+// The only key whose path has all words of the name in it; "" when there is none, or more.
+std::string_view WithWordsOf(std::string_view name, const std::vector<std::string_view>& known) {
+  std::string_view found;
+  for (const std::string_view path : known) {
+    const auto words = Split(name, '_');
+    const bool all = std::ranges::all_of(words, [&](const auto& word) {
+      return word.size() > 2 && path.find(word) != std::string_view::npos;
+    });
+    if (!all) continue;
+    if (!found.empty()) return {};
+    found = path;
+  }
+  return found;
+}
+
+// "name, seed, search.*, noise.*"
+std::string TopOf(const std::vector<std::string_view>& known) {
+  std::vector<std::string> top;
+  for (const std::string_view path : known) {
+    const std::size_t dot = path.find('.');
+    std::string one(path.substr(0, dot));
+    if (dot != std::string_view::npos) one += ".*";
+    if (!std::ranges::count(top, one)) top.push_back(std::move(one));
+  }
+  return NamesOf(top);
+}
+
 }  // namespace
 
 Result<KeyValue> ValueFor(const KeyInfo& key, const Assignment& assignment) {
@@ -72,6 +107,26 @@ Result<KeyValue> ValueFor(const KeyInfo& key, const Assignment& assignment) {
   if (const std::optional<std::string> wrong = CheckValue(key, *value))
     return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
   return *std::move(value);
+}
+
+std::string UnknownKey(const std::string& path, const std::vector<std::string_view>& known) {
+  const std::size_t dot = path.find('.');
+  const std::string table = dot == std::string::npos ? "" : path.substr(0, dot + 1);
+  const std::string name = path.substr(table.size());
+  std::vector<std::string_view> siblings;  // in the same table
+  std::string_view same_name;              // in another one
+  for (const std::string_view key : known) {
+    if (IsNamed(key, name)) same_name = key;
+    if (!table.empty() && key.starts_with(table)) siblings.push_back(key.substr(table.size()));
+  }
+  std::string nearest(same_name);
+  if (nearest.empty() && siblings.empty()) nearest = NearestName(path, known);
+  if (nearest.empty() && siblings.empty()) nearest = WithWordsOf(name, known);
+  if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
+  const std::string unknown = fmt::format("unknown key '{}'; ", path);
+  if (!nearest.empty()) return unknown + fmt::format("did you mean '{}'?", nearest);
+  if (siblings.empty()) return unknown + "known: " + TopOf(known);
+  return unknown + fmt::format("known: {}{}", table, fmt::join(siblings, ", " + table));
 }
 
 std::string LineOf(std::string_view name, const KeyInfo& key, const KeyValue& value) {

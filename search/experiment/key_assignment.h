@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/key.h"
 #include "base/result.h"
@@ -18,6 +20,11 @@ Status Assign(const SettingsKey<Settings>& key, const Assignment& assignment, Se
   key.set(settings, value);
   return Ok{};
 }
+
+// "unknown key 'search.popultion'; did you mean 'search.population'?": the key that could have been meant, by
+// its name, its name in another table or the words in it ('camera_drop' of
+// noise.omnidirectional_camera.drop); else the keys of its table; else all tables.
+std::string UnknownKey(const std::string& path, const std::vector<std::string_view>& known);
 
 // "NAME = VALUE  # what the key means", a line that ReadToml reads.
 std::string LineOf(std::string_view name, const KeyInfo& key, const KeyValue& value);

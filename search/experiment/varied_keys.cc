@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "base/nearest_name.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "search/experiment/key_assignment.h"
@@ -57,8 +56,7 @@ struct Reading {
   Varied varied;
 
   Error Wrong(const std::string& what) const {
-    return InvalidInput(
-        fmt::format("{} {}: {}", varied == Varied::kDrawn ? "[conditions]" : "--vary", text, what));
+    return InvalidInput(varied == Varied::kDrawn ? what : fmt::format("--vary {}: {}", text, what));
   }
 };
 
@@ -136,6 +134,14 @@ std::size_t EntryAt(const VariedKey& varied, double place) {
   return entry;
 }
 
+std::vector<std::string_view> PathsThatCanVary(std::span<const Key> keys) {
+  std::vector<std::string_view> paths;
+  for (const Key& key : keys) {
+    if (!WhyItCannotVary(key)) paths.push_back(key.path);
+  }
+  return paths;
+}
+
 }  // namespace
 
 std::optional<std::string> WhyItCannotVary(const Key& key) {
@@ -207,7 +213,7 @@ Result<std::vector<VariedKey>> ParseVariedKeys(const std::vector<std::string>& t
     const std::string path = text.substr(0, equals);
     const std::string rest = text.substr(equals + 1);
     const auto key = std::ranges::find(keys, path, &Key::path);
-    if (key == keys.end()) return wrong(UnknownName("key", path, keys));
+    if (key == keys.end()) return wrong(UnknownKey(path, PathsThatCanVary(keys)));
     if (const auto reason = WhyItCannotVary(*key)) return wrong(fmt::format("{} {}", path, *reason));
     if (!known.insert(path).second) return wrong(path + " varies twice");
     VariedKey one{.key = *key, .step = OnGrid(path) ? experiment.genome.step : 0.0};

@@ -51,8 +51,8 @@ enum class Varied { kTried, kDrawn };
 // of its scenario and controller among them. Numbers may begin with their point (".1"). Error: not of this
 // form; no such key, or one that stands twice; a key that says how is searched or what is kept, a seed, a
 // text; a value or an end of a range that the key does not take; LOW not below HIGH; a logarithm of what is
-// not above 0; weights below 0, or that sum to nothing. It begins with "--vary TEXT: ", of what is drawn with
-// "[conditions] TEXT: ".
+// not above 0; weights below 0, or that sum to nothing. It begins with "--vary TEXT: "; of what is drawn
+// with nothing, since it stands in files too.
 Result<std::vector<VariedKey>> ParseVariedKeys(const std::vector<std::string>& texts,
                                                std::span<const Key> keys, const Experiment& experiment,
                                                Varied varied = Varied::kTried);

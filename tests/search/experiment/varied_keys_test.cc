@@ -126,6 +126,13 @@ TEST(VariedKeysTest, SayWhatIsWrong) {
   EXPECT_EQ(ErrorOfKeys({"controller_parameters.bird_sped=1..2"}),
             "--vary controller_parameters.bird_sped=1..2: unknown key 'controller_parameters.bird_sped'; did "
             "you mean 'controller_parameters.bird_speed'?");
+  EXPECT_EQ(ErrorOfKeys({"camera_drop=0..1"}),
+            "--vary camera_drop=0..1: unknown key 'camera_drop'; did you mean "
+            "'noise.omnidirectional_camera.drop'?");
+  EXPECT_EQ(
+      ErrorOfKeys({"quux=0..1"}),
+      "--vary quux=0..1: unknown key 'quux'; known: physics, arena.*, genome.*, random_faults.*, noise.*, "
+      "scenario_parameters.*, controller_parameters.*");
   EXPECT_EQ(range("0.1"), key + "0.1: '0.1' is no range, as in controller_parameters.bird_speed=0.5..2");
   EXPECT_EQ(range("a..b"), key + "a..b: 'a..b' is no range of two numbers, as in 0.5..2");
   EXPECT_EQ(range("0.15..0.05"), key + "0.15..0.05: 0.15 is not below 0.05");
