@@ -82,7 +82,7 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
 Result<ExitCode> PrintDryRun(CommandContext& context, const CampaignRun& campaign,
                              const std::vector<SearchPlan>& searches, const FailureTally& without_obstacles) {
   TRY(const Forecast forecast, MakeForecast(searches));
-  const int workers = campaign.session.workers;
+  const int workers = campaign.MostWorkers();
   context.out << (campaign.serving.json ? ForecastJson(forecast, searches, workers, without_obstacles)
                                         : ForecastText(forecast, searches, workers, without_obstacles))
               << std::flush;

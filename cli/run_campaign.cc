@@ -14,11 +14,13 @@
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
+#include "cli/submitted_campaign.h"
 #include "master/directory/campaign_directory.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_page.h"
 #include "proto/run_failure.h"
 #include "report/tables/summary_tables.h"
+#include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 #include "study/questions/chosen_cases.h"
 #include "study/questions/questioned_cases.h"
@@ -80,12 +82,11 @@ void PrintServing(CommandContext& context, const CampaignRun& campaign, const Se
                              endpoint));
     context.err << (context.err_is_terminal ? "\x1b[0m" : "") << std::flush;
   }
-  if (campaign.serving.quiet || campaign.bind.endpoint.empty()) return;
+  if (campaign.serving.quiet || (campaign.bind.endpoint.empty() && !campaign.jobs)) return;
   // The worker beside this program, as a person who started this one can start it.
-  const std::string start = campaign.session.make_pool
-                                ? ""
-                                : fmt::format("; start them with: {}-worker --dir {}", context.program,
-                                              PastedPath(campaign.directory));
+  const std::string start = campaign.jobs ? ""
+                                          : fmt::format("; start them with: {}-worker --dir {}",
+                                                        context.program, PastedPath(campaign.directory));
   PrintMessage(context, fmt::format("workers connect to {}{}{}", endpoint,
                                     notice.encrypted ? ", encrypted" : "", start));
 }
@@ -164,7 +165,7 @@ Result<ExitCode> Conclude(CommandContext& context, const CampaignRun& campaign, 
 
 Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   const ServingOptions& options = campaign.serving;
-  const std::string& endpoint = campaign.bind.endpoint;
+  const std::string& endpoint = campaign.jobs ? campaign.jobs->settings().bind : campaign.bind.endpoint;
   TRY(const double audit_share, ParseShare("--audit", options.audit));
   TRY(endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint));
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
@@ -185,6 +186,11 @@ Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaig
   if (!endpoint.empty()) session.bind = endpoint;
   if (!endpoint.empty() || session.insecure)
     session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
+  if (campaign.jobs) {
+    session.workers = 0;
+    session.slurm = slurm::WriteSlurmSettings(campaign.jobs->settings());
+    session.make_pool = [&] { return campaign.jobs->MakePool(ClientOf(context, *campaign.jobs)); };
+  }
   session.stop_requested = StopSignal::Requested;
   session.on_progress = [&](const CampaignProgress& now) {
     began = true;
@@ -222,29 +228,62 @@ Status PrintFinished(CommandContext& context, const CampaignSummary& summary, co
   return PrintSummary(context, summary, directory, options.json);
 }
 
-Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options) {
+int CampaignRun::MostWorkers() const {
+  if (!jobs) return session.workers;
+  const slurm::PoolLimits& pool = jobs->settings().pool;
+  return pool.max_allocations * pool.workers_per_allocation;
+}
+
+std::string CampaignRun::WorkersText() const {
+  return jobs ? "workers from " + jobs->cluster().name : Counted(session.workers, "worker");
+}
+
+Status UseWorkers(CommandContext& context, const RunningOptions& options, const Experiment& experiment,
+                  const std::string& file, CampaignRun& campaign) {
+  if (options.slurm.empty()) {
+    TRY(campaign.session.workers, ParseWorkers(options.workers));
+    return Ok{};
+  }
+  if (!options.workers.empty()) return InvalidInput("--slurm goes without --workers: workers are jobs");
+  campaign.session.workers = 0;
+  TRY(campaign.jobs, slurm::SlurmCampaign::Find(campaign.directory));
+  if (campaign.jobs) return Ok{};
+  std::optional<slurm::SlurmSource> table;
+  if (!file.empty()) {
+    TRY(const ExperimentText text, ReadExperimentText(file));
+    table = {text.text, text.file_name, false};
+  }
+  TRY(slurm::SlurmSettings settings, ReadSlurmOptions({"here", options.slurm}, table, experiment.name));
+  TRY(AskForCores(experiment, settings));
+  TRY(slurm::SlurmCampaign jobs, slurm::SlurmCampaign::Make(settings, campaign.directory));
+  TRY(TestJobs(context, jobs, /*print=*/false));
+  campaign.jobs = std::move(jobs);
+  return Ok{};
+}
+
+Result<CampaignRun> LocalRun(CommandContext& context, const std::vector<SearchPlan>& searches,
+                             const LocalOptions& options) {
   const Experiment& experiment = searches.front().experiment;
-  TRY(const int workers, ParseWorkers(options.running.workers));
   TRY(const std::string directory, NewDirectory(options.experiment.directory, experiment));
   const SearchRow& search = RowOf(experiment);
   CampaignRun campaign;
   campaign.directory = directory;
+  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, campaign));
   const std::string what =
       searches.size() == 1
           ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)
           : fmt::format("{} searches ({}; ...; {})", searches.size(), searches.front().settings,
                         searches.back().settings);
   campaign.announcement =
-      fmt::format("{}: {}, {}, in {}", experiment.name, what, Counted(workers, "worker"), directory);
+      fmt::format("{}: {}, {}, in {}", experiment.name, what, campaign.WorkersText(), directory);
   campaign.serving = options.running;
-  campaign.session.workers = workers;
   return campaign;
 }
 
 Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPlan>& searches,
                             const LocalOptions& options,
                             const std::function<Result<ExitCode>(const std::string& directory)>& tell) {
-  TRY(CampaignRun campaign, LocalRun(searches, options));
+  TRY(CampaignRun campaign, LocalRun(context, searches, options));
   if (options.dry_run) return PrintDryRun(context, campaign, searches);
   campaign.run = [&](const SessionOptions& session) {
     return context.campaigns.Start(campaign.directory, searches, session);

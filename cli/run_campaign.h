@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cli/options/options.h"
+#include "slurm/slurm_campaign.h"
 
 namespace gauntlet {
 
@@ -18,12 +20,25 @@ struct CampaignRun {
   std::string announcement;           // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;
   BindOptions bind;
-  bool looks_at_empty_arena = false;  // too, when it has ended
-  SessionOptions session;             // workers, pool and batch job; the rest follows from what stands above
+  bool looks_at_empty_arena = false;         // too, when it has ended
+  std::optional<slurm::SlurmCampaign> jobs;  // whose jobs the workers are; none: session.workers says
+  SessionOptions session;                    // workers and batch job; the rest follows from what stands above
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out; nothing: the summary.
   std::function<Status(const SessionReport&)> report;
+
+  // At one time, at most.
+  int MostWorkers() const;
+  // "4 workers", "workers from slurm"
+  std::string WorkersText() const;
 };
+
+// Workers of this machine as --workers says, or jobs as --slurm does: those of an earlier call, if there was
+// one that had some in the campaign's directory, else as the options, the user's file and the [slurm] table
+// of the `file` of the experiment say ("" = it has none). Error: also a cluster on which no such job could
+// start.
+Status UseWorkers(CommandContext& context, const RunningOptions& options, const Experiment& experiment,
+                  const std::string& file, CampaignRun& campaign);
 
 // Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0; 1 when a search ended and
 // none of its runs gave a result, or an audit found runs that end differently when they are repeated; 3 when
@@ -39,8 +54,9 @@ Status PrintSummary(CommandContext& context, const CampaignSummary& summary, con
 Status PrintFinished(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
                      const MessageOptions& options);
 
-// A new campaign with workers on this machine, but for what it is to run.
-Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options);
+// A new campaign with workers of its own, but for what it is to run.
+Result<CampaignRun> LocalRun(CommandContext& context, const std::vector<SearchPlan>& searches,
+                             const LocalOptions& options);
 // Runs it (or is a dry run), and when it has come to its end tells what it has found.
 Result<ExitCode> RunAndTell(CommandContext& context, const std::vector<SearchPlan>& searches,
                             const LocalOptions& options,

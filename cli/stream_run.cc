@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <ctime>
 #include <optional>
 
@@ -11,7 +10,6 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "cli/run_campaign.h"
-#include "cli/submitted_campaign.h"
 #include "master/directory/campaign_directory.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
@@ -45,26 +43,9 @@ Status CheckSame(const std::string& directory, const Experiment& here) {
       fmt::format("{} was begun with another plug-in or definition: give another --dir", directory));
 }
 
-// What makes workers jobs; nothing where none are wanted.
-Result<std::optional<slurm::SlurmCampaign>> JobsOf(const LocalOptions& options, SlurmOptions slurm,
-                                                   const Experiment& experiment,
-                                                   const std::string& directory) {
-  if (slurm.settings.empty()) return std::optional<slurm::SlurmCampaign>();
-  if (!options.running.workers.empty())
-    return InvalidInput("--slurm goes without --workers: workers are jobs");
-  TRY(std::optional<slurm::SlurmCampaign> before, slurm::SlurmCampaign::Find(directory));
-  if (before) return before;
-  slurm.master = "here";
-  TRY(const ExperimentText text, ReadExperimentText(options.experiment.experiment));
-  TRY(const slurm::SlurmSettings settings,
-      ReadSlurmOptions(slurm, slurm::SlurmSource{text.text, text.file_name, false}, experiment.name));
-  TRY(slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
-  return std::optional(std::move(campaign));
-}
-
 }  // namespace
 
-Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options, const SlurmOptions& slurm,
+Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
                            const std::vector<ExtraSet>& extra) {
   TRY(const Experiment experiment, LoadExperimentWith(options.experiment, extra));
   const std::string& wanted = options.experiment.directory;
@@ -74,27 +55,20 @@ Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
   if (exists) {
     TRY(CheckSame(directory, experiment));
   }
-  TRY(const auto jobs, JobsOf(options, slurm, experiment, directory));
-  TRY(const int workers, jobs ? Result<int>(0) : ParseWorkers(options.running.workers));
-  if (!exists) {
-    TRY(context.campaigns.Prepare(directory, {{"", experiment}},
-                                  jobs ? slurm::WriteSlurmSettings(jobs->settings()) : ""));
-  }
-  EvaluationPipe pipe(experiment, directory, {STDIN_FILENO, STDOUT_FILENO});
   CampaignRun run;
   run.directory = directory;
+  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, run));
+  if (!exists) {
+    TRY(context.campaigns.Prepare(directory, {{"", experiment}},
+                                  run.jobs ? slurm::WriteSlurmSettings(run.jobs->settings()) : ""));
+  }
+  EvaluationPipe pipe(experiment, directory, {STDIN_FILENO, STDOUT_FILENO});
   run.goes_on_by = fmt::format("evaluate {} --stdin --dir {}, and the other options of this call",
                                ShellQuoted(options.experiment.experiment), PastedPath(directory));
   run.announcement = fmt::format("{}: cases from stdin, {}, seed {}, in {}", experiment.name,
-                                 jobs ? "workers from " + jobs->cluster().name : Counted(workers, "worker"),
-                                 experiment.seed, directory);
+                                 run.WorkersText(), experiment.seed, directory);
   run.serving = options.running;
-  run.session.workers = workers;
   run.session.feed = &pipe;
-  if (jobs) {
-    run.bind.endpoint = jobs->settings().bind;
-    run.session.make_pool = [&] { return jobs->MakePool(ClientOf(context, *jobs)); };
-  }
   run.run = [&](const SessionOptions& session) { return context.campaigns.Resume(directory, session); };
   run.report = [&](const SessionReport& report) -> Status {
     if (!options.running.quiet)

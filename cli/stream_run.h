@@ -9,9 +9,9 @@
 
 namespace gauntlet {
 
-// Begins the campaign in its directory, or goes on with it there, until standard input ends. `slurm`: where
-// settings are given, workers are jobs. Exit codes as RunCampaign's.
-Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options, const SlurmOptions& slurm,
+// Begins the campaign in its directory, or goes on with it there, until standard input ends. Exit codes as
+// RunCampaign's.
+Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
                            const std::vector<ExtraSet>& extra);
 
 }  // namespace gauntlet

@@ -42,13 +42,9 @@ Status MakeStage(CommandContext& context, const Study& study, const StudyRun& ru
   return SyncDirectory(run.directory);
 }
 
-std::string Announcement(const Study& study, const CampaignRun& campaign, const StudyRun& run,
-                         StudyStage stage) {
-  const int workers = campaign.session.workers;
+std::string Announcement(const Study& study, const CampaignRun& campaign, StudyStage stage) {
   return fmt::format("{}: {}, {}, in {}", study.name,
-                     stage == StudyStage::kSearches ? "searches" : "re-simulations",
-                     run.submitted != nullptr ? std::string("workers from ") + run.submitted->cluster().name
-                                              : Counted(workers, "worker"),
+                     stage == StudyStage::kSearches ? "searches" : "re-simulations", campaign.WorkersText(),
                      campaign.directory);
 }
 
@@ -63,17 +59,12 @@ Result<ExitCode> RunStage(CommandContext& context, const Study& study, const Stu
   campaign.directory = CampaignOf(run.directory, stage);
   campaign.resumed_by = run.directory;
   campaign.serving = run.running;
-  std::optional<slurm::SlurmCampaign> jobs;
-  if (run.submitted == nullptr) {
-    campaign.session.workers = workers;
-  } else {
-    TRY(jobs, slurm::SlurmCampaign::Make(run.submitted->settings(), campaign.directory));
-    campaign.bind.endpoint = jobs->settings().bind;
-    campaign.session.workers = 0;
+  campaign.session.workers = workers;
+  if (run.submitted != nullptr) {
+    TRY(campaign.jobs, slurm::SlurmCampaign::Make(run.submitted->settings(), campaign.directory));
     campaign.session.batch_job = run.batch_job;
-    campaign.session.make_pool = [&] { return jobs->MakePool(ClientOf(context, *jobs)); };
   }
-  campaign.announcement = Announcement(study, campaign, run, stage);
+  campaign.announcement = Announcement(study, campaign, stage);
   campaign.run = [&](const SessionOptions& session) {
     return context.campaigns.Resume(campaign.directory, session);
   };

@@ -8,6 +8,8 @@
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 #include "cli/run_campaign.h"
+#include "controllers/command/definition.h"
+#include "master/directory/commands.h"
 #include "master/session/bind_endpoint.h"
 
 namespace gauntlet {
@@ -37,6 +39,13 @@ Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
     *path = error ? std::filesystem::absolute(*path, error).string() : canonical.string();
   }
   return settings;
+}
+
+Status AskForCores(const Experiment& experiment, slurm::SlurmSettings& settings) {
+  if (experiment.scenario != controllers::command::kScenario) return Ok{};
+  TRY(const controllers::command::Definition command, CommandOf(experiment.scenario_plugin));
+  settings.pool.workers_per_allocation *= command.cores;
+  return Ok{};
 }
 
 std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,
@@ -79,10 +88,8 @@ Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& o
   CampaignRun run;
   run.directory = directory;
   run.serving = options;
-  run.bind.endpoint = campaign.settings().bind;
-  run.session.workers = 0;
+  run.jobs = campaign;
   run.session.batch_job = batch_job;
-  run.session.make_pool = [&] { return campaign.MakePool(ClientOf(context, campaign)); };
   bool served = false;
   run.run = [&](const SessionOptions& session) {
     Result<SessionReport> report = context.campaigns.Resume(directory, session);

@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/options/options.h"
+#include "search/experiment/experiment.h"
 #include "slurm/slurm_campaign.h"
 
 namespace gauntlet {
@@ -16,6 +17,9 @@ namespace gauntlet {
 Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
                                               const std::optional<slurm::SlurmSource>& file,
                                               const std::string& name);
+
+// Of a command that uses several cores, each run takes as many of its allocation's slots.
+Status AskForCores(const Experiment& experiment, slurm::SlurmSettings& settings);
 
 // What speaks to the campaign's cluster.
 std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,

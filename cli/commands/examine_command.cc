@@ -20,6 +20,7 @@
 #include "cli/options/stop_signal.h"
 #include "cli/output/examination_output.h"
 #include "cli/output/output_file.h"
+#include "cli/run_campaign.h"
 #include "master/campaign/forecast.h"
 #include "master/directory/campaign_directory.h"
 #include "proto/json_text.h"
@@ -115,7 +116,12 @@ class Examination {
   Result<ExitCode> Step(const Command& command) {
     Command whole = command;
     const auto dir = std::ranges::find(whole, "--dir");
-    if (dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1))) whole = {"resume", *(dir + 1)};
+    const bool resumes = dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1));
+    if (resumes) whole = {"resume", *(dir + 1)};
+    // A campaign keeps whose jobs its workers are.
+    for (const std::string& setting : options_.running.slurm) {
+      if (!resumes) whole.insert(whole.end(), {"--slurm", setting});
+    }
     if (!options_.running.workers.empty()) whole.insert(whole.end(), {"--workers", options_.running.workers});
     if (!options_.running.audit.empty()) whole.insert(whole.end(), {"--audit", options_.running.audit});
     if (!options_.running.metrics_port.empty())
@@ -230,7 +236,9 @@ Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& option
   Experiment search = experiment;
   search.search.algorithm = "random";
   TRY(const Forecast forecast, MakeForecast({{"", search, {}}}));
-  TRY(const int workers, ParseWorkers(options.running.workers));
+  CampaignRun steps;
+  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, steps));
+  const int workers = steps.MostWorkers();
   const double seconds = forecast.seconds_per_run * static_cast<double>(plan.runs) / workers;
   std::vector<Command> commands = examination.Searches();
   for (const Command& one : examination.Margins()) commands.push_back(one);

@@ -246,6 +246,8 @@ Result<ExitCode> RunStoredFit(CommandContext& context, const FitOptions& options
 Result<ExitCode> RunFit(CommandContext& context, const FitOptions& options) {
   if (!options.draws.empty() && options.predict.empty())
     return InvalidInput("--draws is for --predict EXPERIMENT or --predict STUDY");
+  if (!options.running.slurm.empty() && !options.predict.empty())
+    return InvalidInput("--slurm is for the fit itself: --predict simulates on this machine");
   if (CampaignDirectory::IsCampaign(options.experiment.experiment)) return RunStoredFit(context, options);
   TRY(const SearchPlan plan, PlanFit(context, options));
   if (options.print) {

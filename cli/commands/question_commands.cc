@@ -36,7 +36,6 @@ struct QuestionOptions : LocalOptions {
   Question question;
   SweepOptions sweep;
   bool from_stdin = false;
-  SlurmOptions slurm;
   std::string place;
   std::vector<std::string> cases;
   std::string other;                                       // a second experiment
@@ -106,17 +105,16 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
 }
 
 // The campaign begins, or goes on where an earlier call with the same cases was stopped.
-CampaignRun RunOfCall(CommandContext& context, const Call& call, int workers, const ServingOptions& serving) {
+Result<CampaignRun> RunOfCall(CommandContext& context, const Call& call, const RunningOptions& running) {
   std::size_t cases = 0;
   for (const SearchPlan& search : call.searches) cases += search.cases.size();
   CampaignRun campaign;
   campaign.directory = call.directory;
   campaign.same_command_resumes = true;
-  campaign.announcement =
-      fmt::format("{} case{} with fresh seeds, {} worker{}, in {}", cases, cases == 1 ? "" : "s", workers,
-                  workers == 1 ? "" : "s", call.directory);
-  campaign.serving = serving;
-  campaign.session.workers = workers;
+  TRY(UseWorkers(context, running, call.searches.front().experiment, "", campaign));
+  campaign.announcement = fmt::format("{} with fresh seeds, {}, in {}", Counted(cases, "case"),
+                                      campaign.WorkersText(), call.directory);
+  campaign.serving = running;
   campaign.run = [&context, &call](const SessionOptions& session) {
     return CampaignDirectory::IsCampaign(call.directory)
                ? context.campaigns.Resume(call.directory, session)
@@ -126,7 +124,7 @@ CampaignRun RunOfCall(CommandContext& context, const Call& call, int workers, co
 }
 
 Result<CampaignRun> RunOfNewCampaign(CommandContext& context, Call& call, const QuestionOptions& options) {
-  TRY(CampaignRun campaign, LocalRun(call.searches, options));
+  TRY(CampaignRun campaign, LocalRun(context, call.searches, options));
   call.directory = campaign.directory;
   campaign.run = [&context, &call](const SessionOptions& session) {
     return context.campaigns.Start(call.directory, call.searches, session);
@@ -212,15 +210,12 @@ Result<ExitCode> RunAsStream(CommandContext& context, const QuestionOptions& opt
     return InvalidInput(
         "--stdin goes without --case, --from, --sweep, --seeds and --dry-run: lines say what is asked");
   TRY(const std::vector<ExtraSet> extra, ExtraOf(options, "stream"));
-  return RunStream(context, options, options.slurm, extra);
+  return RunStream(context, options, extra);
 }
 
 Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& options) {
   const Place place = options.question.place;
   if (options.from_stdin) return RunAsStream(context, options);
-  if (!options.slurm.settings.empty())
-    return InvalidInput("--slurm is for --stdin; other searches: 'submit'");
-  TRY(const int workers, ParseWorkers(options.running.workers));
   TRY(const Asking asking, AskingOf(context, options));
   TRY(Call call, PlanCall(options.question, asking));
   TRY(Outputs outputs, OpenOutputs(options));
@@ -234,11 +229,11 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
   if (place == Place::kCorpus) {
     TRY(MakeFolder(FolderOf(options.question, options.place)));
   }
-  TRY(CampaignRun campaign, place == Place::kNewCampaign
-                                ? RunOfNewCampaign(context, call, options)
-                                : RunOfCall(context, call, workers, options.running));
+  TRY(CampaignRun campaign, place == Place::kNewCampaign ? RunOfNewCampaign(context, call, options)
+                                                         : RunOfCall(context, call, options.running));
   if (options.dry_run) return PrintDryRun(context, campaign, call.searches);
-  if (options.question.looks_at_empty_arena) LookAtEmptyArena(context, options.place, workers);
+  if (options.question.looks_at_empty_arena && !campaign.jobs)
+    LookAtEmptyArena(context, options.place, campaign.session.workers);
   ExitCode told = kExitDone;
   campaign.report = [&](const SessionReport& report) -> Status {
     if (report.end == CampaignEnd::kStopped && place == Place::kCorpus) return Ok{};
@@ -257,8 +252,6 @@ void AddPlace(CLI::App& command, const Question& question, QuestionOptions& opti
     if (question.streams) {
       command.add_flag("--stdin", options.from_stdin,
                        "cases come line by line on stdin instead, answers go to stdout; see below");
-      AddValue(command, "--slurm", "KEY=VALUE", options.slurm.settings,
-               "with --stdin: workers are jobs of a cluster, as 'gauntlet submit' has them; repeatable");
     }
     if (*question.other == '\0') return;
     command.add_option("OTHER", options.other, question.other);
@@ -297,7 +290,10 @@ void AddQuestion(CommandParser& parser, const Question& question) {
   options.question = question;
   AddPlace(command, question, options);
   for (const QuestionOption& option : question.options) AddOption(command, option, options);
-  if (question.place != Place::kNewCampaign) AddRunningOptions(command, options.running);
+  if (question.place != Place::kNewCampaign) {
+    AddRunningOptions(command, options.running);
+    AddJobsOption(command, options.running);
+  }
   command.footer(question.help);
 }
 

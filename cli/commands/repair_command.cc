@@ -250,7 +250,7 @@ Result<ExitCode> ProveAndTell(CommandContext& context, const RepairOptions& opti
                   searches.size(), campaign.directory);
   campaign.goes_on_by = fmt::format("repair {}", PastedPath(dir));
   campaign.serving = options.running;
-  TRY(campaign.session.workers, ParseWorkers(options.running.workers));
+  TRY(UseWorkers(context, options.running, repair.experiment, "", campaign));
   const bool begun = CampaignDirectory::IsCampaign(campaign.directory);
   campaign.run = [&](const SessionOptions& session) {
     return begun ? context.campaigns.Resume(campaign.directory, session)

@@ -57,7 +57,7 @@ Result<ExitCode> RunSearches(CommandContext& context, const SearchOptions& optio
   if (options.needs_passing || options.dry_run) {
     TRY(without_obstacles, CheckEmptyArenas(searches, options));
   }
-  TRY(CampaignRun campaign, LocalRun(searches, options));
+  TRY(CampaignRun campaign, LocalRun(context, searches, options));
   if (options.dry_run) return PrintDryRun(context, campaign, searches, without_obstacles);
   campaign.looks_at_empty_arena = HasBaseline(searches.front().experiment.search.algorithm);
   campaign.run = [&](const SessionOptions& session) {

@@ -11,9 +11,7 @@
 #include "cli/options/options.h"
 #include "cli/options/sweep.h"
 #include "cli/submitted_campaign.h"
-#include "controllers/command/definition.h"
 #include "master/campaign/forecast.h"
-#include "master/directory/commands.h"
 #include "master/session/bind_endpoint.h"
 #include "proto/json_text.h"
 #include "search/experiment/experiment_file.h"
@@ -45,14 +43,6 @@ Result<ExitCode> SubmitAndReturn(CommandContext& context, const SubmitOptions& o
   return kExitDone;
 }
 
-// Of a command that uses several cores, each run takes as many of its allocation's slots.
-Status AskForCores(const Experiment& experiment, int& slots) {
-  if (experiment.scenario != controllers::command::kScenario) return Ok{};
-  TRY(const controllers::command::Definition command, CommandOf(experiment.scenario_plugin));
-  slots *= command.cores;
-  return Ok{};
-}
-
 // What the jobs come to, as a comment behind their scripts.
 Result<ExitCode> PrintCost(CommandContext& context, const std::vector<SearchPlan>& searches,
                            const slurm::PoolLimits& pool) {
@@ -78,7 +68,7 @@ Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options
   TRY(const ExperimentText text, ReadExperimentText(options.experiment.experiment));
   TRY(slurm::SlurmSettings settings,
       ReadSlurmOptions(options.slurm, slurm::SlurmSource{text.text, text.file_name, false}, experiment.name));
-  TRY(AskForCores(experiment, settings.pool.workers_per_allocation));
+  TRY(AskForCores(experiment, settings));
   TRY(const std::string directory, NewDirectory(options.experiment.directory, experiment));
   TRY(const slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
 

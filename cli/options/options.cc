@@ -67,6 +67,13 @@ void AddRunningOptions(CLI::App& command, RunningOptions& options) {
   AddServingOptions(command, options);
 }
 
+void AddJobsOption(CLI::App& command, RunningOptions& options) {
+  AddValue(command, "--slurm", "KEY=VALUE", options.slurm,
+           "workers are jobs of a cluster, as 'gauntlet submit' has them, while this process stays their "
+           "master, e.g. "
+           "--slurm cluster=slurm; repeatable");
+}
+
 void AddBindOptions(CLI::App& command, BindOptions& options) {
   AddValue(
       command, "--bind", "ENDPOINT", options.endpoint,
@@ -126,6 +133,7 @@ void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddRunningOptions(command, options.running);
+  AddJobsOption(command, options.running);
   command.add_flag(
       "--dry-run", options.dry_run,
       "simulate only a few runs and write nothing; print how many runs there would be, about how "

@@ -29,9 +29,10 @@ struct ServingOptions : MessageOptions {
   std::string audit;
   std::string metrics_port;
 };
-// Of a process that has workers on this machine too.
+// Of a process that has workers of its own: on this machine, or as jobs of a cluster.
 struct RunningOptions : ServingOptions {
   std::string workers;
+  std::vector<std::string> slurm;  // "key=value"; none: on this machine
 };
 // Where workers connect that come from elsewhere.
 struct BindOptions {
@@ -78,6 +79,8 @@ void AddValue(CLI::App& command, const char* name, const char* type, std::vector
 void AddMessageOptions(CLI::App& command, MessageOptions& options);
 void AddServingOptions(CLI::App& command, ServingOptions& options);
 void AddRunningOptions(CLI::App& command, RunningOptions& options);
+// --slurm, of what may have jobs as workers.
+void AddJobsOption(CLI::App& command, RunningOptions& options);
 void AddBindOptions(CLI::App& command, BindOptions& options);
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
 // Libraries of plug-ins.

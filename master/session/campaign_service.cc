@@ -160,7 +160,7 @@ class Campaigns final : public CampaignService {
     // Before anything is made: the corrected command is to find the directory as this one did.
     TRY(TryToListen(options.bind));
     const std::vector<SearchPlan> plans = Numbered(searches);
-    TRY(NewCampaign created, Create(dir, plans, ""));
+    TRY(NewCampaign created, Create(dir, plans, options.slurm));
     return CampaignServer(created.ownership, plans, created.golden_hashes, options).Serve();
   }
 

@@ -121,6 +121,37 @@ TEST_F(Submit, AnAddressThatNoMasterCouldListenOnIsRefusedBeforeAnythingIsMade) 
   EXPECT_THAT(cluster_.submitted, IsEmpty());
 }
 
+// Of commands whose master stays here.
+TEST_F(Submit, JobsAreTheWorkersOfACommandThatAsksForThem) {
+  std::filesystem::create_directories(root_ / "gauntlet");
+  std::ofstream(root_ / "gauntlet" / "slurm.toml") << "account = \"a\"\n";
+  std::ofstream(root_ / "e.toml") << "scenario = \"flocking\"\n[slurm]\nqos = \"c\"\n";
+  campaigns_.report.summary.searches.resize(1);
+  campaigns_.report.summary.searches[0].search = "genetic";
+  bool has_pool = false;
+  campaigns_.during = [&](const SessionOptions& session) { has_pool = session.make_pool() != nullptr; };
+  EXPECT_EQ(Run({"evolve", root_ / "e.toml", "--dir", dir(), "--slurm", "memory=3G"}), kExitDone)
+      << err_.str();
+  EXPECT_THAT(err_.str(), HasSubstr(", workers from Slurm, in "));
+  EXPECT_TRUE(has_pool);
+  EXPECT_EQ(campaigns_.workers, 0);
+  EXPECT_THAT(campaigns_.slurm, AllOf(HasSubstr("account = \"a\""), HasSubstr("qos = \"c\""),
+                                      HasSubstr("memory = \"3G\""), HasSubstr("master = \"here\"")));
+  EXPECT_THAT(cluster_.tested, SizeIs(1)) << "the workers' job";
+
+  EXPECT_EQ(Run({"evolve", "flocking", "--slurm", "memory=3G", "--workers", "2"}), kExitUsage);
+  EXPECT_EQ(err_.str(), "gauntlet: --slurm goes without --workers: workers are jobs\n");
+  EXPECT_EQ(Run({"margin", "flocking", "--vary", "noise.wheels.uniform=0..1", "--on", "random:20", "--slurm",
+                 "partitoin=x"}),
+            kExitUsage);
+  EXPECT_EQ(err_.str(),
+            "gauntlet: --slurm partitoin=x: unknown Slurm setting 'partitoin'; did you mean 'partition'?\n");
+  cluster_.refusal = "invalid partition specified: x";
+  EXPECT_EQ(Run({"probability", "flocking", "--slurm", "partition=x"}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("a job of workers could not start: invalid partition specified: x"));
+  EXPECT_EQ(campaigns_.starts, 1);
+}
+
 TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
   ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
   cluster_.Set("12", "NODE_FAIL");

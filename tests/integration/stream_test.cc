@@ -198,10 +198,6 @@ TEST(StreamTest, OptionsThatContradictItAreRefused) {
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, HasSubstr("--stdin goes without"));
   }
-  const ProcessResult slurm =
-      Gauntlet({"evaluate", "flocking", "--case", "x.json", "--slurm", "partition=a"});
-  EXPECT_EQ(slurm.exit_code, 2);
-  EXPECT_THAT(slurm.err, HasSubstr("--slurm is for --stdin"));
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ class FakeCampaigns : public CampaignService {
   Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& wanted,
                               const SessionOptions& options) override {
     ++starts;
+    slurm = options.slurm;
     searches = wanted;
     experiment = wanted.front().experiment;
     cases = wanted.front().cases;

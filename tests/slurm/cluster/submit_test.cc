@@ -90,6 +90,26 @@ TEST_F(SlurmTest, AStreamOfCasesTakesItsWorkersFromSlurm) {
   EXPECT_TRUE(QueueEmpties());
 }
 
+// Each step asks for jobs of its own.
+TEST_F(SlurmTest, AnExaminationTakesItsWorkersFromSlurm) {
+  const auto examine = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"examine", "flocking", "--budget", "1200",
+                                          "--dir",   dir(),      "-o",       scratch_ / "page.html",
+                                          "--json",  "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Gauntlet(arguments);
+  };
+  const ProcessResult here = examine({});
+  ASSERT_EQ(here.exit_code, 0) << here.err;
+  std::filesystem::remove_all(dir());
+  StartCluster({"--nodes", "1", "--cpus", "2"});
+  const ProcessResult there = examine({"--slurm", "bind=tcp://127.0.0.1:*", "--slurm", "max_allocations=1",
+                                       "--slurm", "workers_per_allocation=2"});
+  EXPECT_EQ(there.exit_code, 0) << there.err;
+  EXPECT_EQ(there.out, here.out);
+  EXPECT_TRUE(QueueEmpties());
+}
+
 // Master and workers on other nodes have the plug-in from the campaign's directory.
 TEST_F(SlurmTest, ASubmittedSearchWithAPluginEndsLikeALocalOneWithoutItsLibrary) {
   StartCluster({"--nodes", "2", "--cpus", "4"});
