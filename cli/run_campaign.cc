@@ -1,5 +1,6 @@
 #include "cli/run_campaign.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -186,11 +187,7 @@ Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaig
   if (!endpoint.empty()) session.bind = endpoint;
   if (!endpoint.empty() || session.insecure)
     session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
-  if (campaign.jobs) {
-    session.workers = 0;
-    session.slurm = slurm::WriteSlurmSettings(campaign.jobs->settings());
-    session.make_pool = [&] { return campaign.jobs->MakePool(ClientOf(context, *campaign.jobs)); };
-  }
+  if (campaign.jobs) UseJobs(context, *campaign.jobs, session);
   session.stop_requested = StopSignal::Requested;
   session.on_progress = [&](const CampaignProgress& now) {
     began = true;
@@ -201,8 +198,8 @@ Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaig
     return campaign.run(session);
   }();
   progress.Finish();
-  if (report && report->end == CampaignEnd::kFinished && campaign.looks_at_empty_arena && session.workers > 0)
-    LookAtEmptyArena(context, campaign.directory, session.workers);
+  if (report && report->end == CampaignEnd::kFinished && campaign.looks_at_empty_arena)
+    LookAtEmptyArena(context, campaign.directory, campaign);
   return report ? Conclude(context, campaign, *report)
                 : FailCampaign(context, campaign, report.error(), began);
 }
@@ -238,25 +235,58 @@ std::string CampaignRun::WorkersText() const {
   return jobs ? "workers from " + jobs->cluster().name : Counted(session.workers, "worker");
 }
 
-Status UseWorkers(CommandContext& context, const RunningOptions& options, const Experiment& experiment,
-                  const std::string& file, CampaignRun& campaign) {
+Status CheckWorkers(const RunningOptions& options) {
   if (options.slurm.empty()) {
-    TRY(campaign.session.workers, ParseWorkers(options.workers));
+    TRY(ParseWorkers(options.workers));
     return Ok{};
   }
   if (!options.workers.empty()) return InvalidInput("--slurm goes without --workers: workers are jobs");
-  campaign.session.workers = 0;
-  TRY(campaign.jobs, slurm::SlurmCampaign::Find(campaign.directory));
-  if (campaign.jobs) return Ok{};
-  std::optional<slurm::SlurmSource> table;
-  if (!file.empty()) {
-    TRY(const ExperimentText text, ReadExperimentText(file));
-    table = {text.text, text.file_name, false};
+  TRY(const slurm::SlurmSettings settings, slurm::ReadSlurmSettings({}, options.slurm));
+  const bool as_job = std::ranges::count(options.slurm, "master=job") > 0;
+  if (as_job)
+    return InvalidInput("--slurm master=job: the master stays here, unless 'submit' makes it a job");
+  return Ok{};
+}
+
+Status UseWorkers(CommandContext& context, const RunningOptions& options, const Experiment& experiment,
+                  const JobsSource& source, CampaignRun& campaign) {
+  TRY(CheckWorkers(options));
+  std::optional<slurm::SlurmCampaign> like;
+  if (!source.anew) {
+    TRY(like, slurm::SlurmCampaign::Find(campaign.directory));
   }
-  TRY(slurm::SlurmSettings settings, ReadSlurmOptions({"here", options.slurm}, table, experiment.name));
-  TRY(AskForCores(experiment, settings));
+  if (options.slurm.empty() && like && options.workers.empty()) {
+    campaign.jobs = std::move(like);
+    return Ok{};
+  }
+  TRY(campaign.session.workers, ParseWorkers(options.workers));
+  if (options.slurm.empty()) return Ok{};
+  bool kept = like.has_value();
+  if (!like && !source.parent.empty()) {
+    TRY(like, slurm::SlurmCampaign::Find(source.parent));
+  }
+  const std::string before = like ? slurm::WriteSlurmSettings(like->settings()) : "";
+  std::optional<slurm::SlurmSource> file;
+  if (like) {
+    file = {before, "slurm.toml", true};
+  } else if (!source.experiment_file.empty()) {
+    TRY(const ExperimentText text, ReadExperimentText(source.experiment_file));
+    file = {text.text, text.file_name, false};
+  }
+  TRY(slurm::SlurmSettings settings, ReadSlurmOptions({"here", options.slurm}, file, experiment.name));
+  const bool slots_are_new = !like || std::ranges::any_of(options.slurm, [](const std::string& set) {
+    return set.starts_with("workers_per_allocation=");
+  });
+  if (slots_are_new) {
+    TRY(AskForCores(experiment, settings));
+  }
   TRY(slurm::SlurmCampaign jobs, slurm::SlurmCampaign::Make(settings, campaign.directory));
-  TRY(TestJobs(context, jobs, /*print=*/false));
+  const std::string text = slurm::WriteSlurmSettings(settings);
+  if (text != before) {
+    TRY(TestJobs(context, jobs, /*print=*/false));
+    kept = false;
+  }
+  if (!kept) campaign.session.slurm = text;
   campaign.jobs = std::move(jobs);
   return Ok{};
 }
@@ -268,7 +298,8 @@ Result<CampaignRun> LocalRun(CommandContext& context, const std::vector<SearchPl
   const SearchRow& search = RowOf(experiment);
   CampaignRun campaign;
   campaign.directory = directory;
-  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, campaign));
+  TRY(UseWorkers(context, options.running, experiment, {.experiment_file = options.experiment.experiment},
+                 campaign));
   const std::string what =
       searches.size() == 1
           ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)

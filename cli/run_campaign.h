@@ -33,12 +33,21 @@ struct CampaignRun {
   std::string WorkersText() const;
 };
 
-// Workers of this machine as --workers says, or jobs as --slurm does: those of an earlier call, if there was
-// one that had some in the campaign's directory, else as the options, the user's file and the [slurm] table
-// of the `file` of the experiment say ("" = it has none). Error: also a cluster on which no such job could
-// start.
+// What --workers and --slurm say. Error: they contradict each other, or one of them is wrong in itself.
+Status CheckWorkers(const RunningOptions& options);
+
+// Where settings of jobs come from, beside --slurm and the user's own file.
+struct JobsSource {
+  std::string experiment_file = "";  // its [slurm] table; "" = none
+  std::string parent = "";           // a campaign that this one belongs to, which comes before the table
+  bool anew = false;                 // what the campaign's directory says of jobs is of one that is replaced
+};
+
+// Workers of this machine, or jobs as --slurm says, beginning with what an earlier call has left in the
+// campaign's directory; without --slurm and --workers as that call had them. Error: also a cluster on which
+// no such job could start.
 Status UseWorkers(CommandContext& context, const RunningOptions& options, const Experiment& experiment,
-                  const std::string& file, CampaignRun& campaign);
+                  const JobsSource& source, CampaignRun& campaign);
 
 // Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0; 1 when a search ended and
 // none of its runs gave a result, or an audit found runs that end differently when they are repeated; 3 when

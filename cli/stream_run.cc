@@ -11,6 +11,7 @@
 #include "base/shell_quoted.h"
 #include "cli/run_campaign.h"
 #include "master/directory/campaign_directory.h"
+#include "master/session/bind_endpoint.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 #include "study/streams/evaluation_pipe.h"
@@ -57,10 +58,13 @@ Result<ExitCode> RunStream(CommandContext& context, const LocalOptions& options,
   }
   CampaignRun run;
   run.directory = directory;
-  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, run));
+  TRY(UseWorkers(context, options.running, experiment, {.experiment_file = options.experiment.experiment},
+                 run));
   if (!exists) {
-    TRY(context.campaigns.Prepare(directory, {{"", experiment}},
-                                  run.jobs ? slurm::WriteSlurmSettings(run.jobs->settings()) : ""));
+    if (run.jobs) {
+      TRY(TryToListen(run.jobs->settings().bind));
+    }
+    TRY(context.campaigns.Prepare(directory, {{"", experiment}}, run.session.slurm));
   }
   EvaluationPipe pipe(experiment, directory, {STDIN_FILENO, STDOUT_FILENO});
   run.goes_on_by = fmt::format("evaluate {} --stdin --dir {}, and the other options of this call",

@@ -53,6 +53,12 @@ std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,
   return context.slurm ? context.slurm() : campaign.MakeClient();
 }
 
+void UseJobs(const CommandContext& context, const slurm::SlurmCampaign& campaign, SessionOptions& session) {
+  session.workers = 0;
+  session.bind = campaign.settings().bind;
+  session.make_pool = [&] { return campaign.MakePool(ClientOf(context, campaign)); };
+}
+
 Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print) {
   struct PlannedJob {
     std::string what;

@@ -25,6 +25,9 @@ Status AskForCores(const Experiment& experiment, slurm::SlurmSettings& settings)
 std::unique_ptr<slurm::SlurmClient> ClientOf(const CommandContext& context,
                                              const slurm::SlurmCampaign& campaign);
 
+// The session's workers are the campaign's jobs. `campaign` outlives the session.
+void UseJobs(const CommandContext& context, const slurm::SlurmCampaign& campaign, SessionOptions& session);
+
 // Asks the cluster of the campaign's jobs whether they could ever start; `print` scripts and answers too.
 // Error: the first that could not.
 Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print);

@@ -59,8 +59,8 @@ SlurmCampaign::SlurmCampaign(SlurmSettings settings, std::string directory)
 
 Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const std::string& directory) {
   std::error_code error;
-  const std::filesystem::path absolute =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(directory), error);
+  std::filesystem::path absolute = std::filesystem::absolute(directory, error);
+  if (!error) absolute = std::filesystem::weakly_canonical(absolute, error);
   if (error) return SystemError(fmt::format("cannot find {}", directory), error.value());
   SlurmCampaign campaign(settings, absolute.string());
   TRY(campaign.cluster_, FindCluster(settings.cluster));

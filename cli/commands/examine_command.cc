@@ -74,6 +74,7 @@ class Examination {
     return {New("margin", "/margins", more)};
   }
 
+  int steps() const { return steps_; }
   // Exit 0 when the whole examination is there.
   Result<ExitCode> Run() {
     for (const Command& command : Searches()) {
@@ -116,12 +117,8 @@ class Examination {
   Result<ExitCode> Step(const Command& command) {
     Command whole = command;
     const auto dir = std::ranges::find(whole, "--dir");
-    const bool resumes = dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1));
-    if (resumes) whole = {"resume", *(dir + 1)};
-    // A campaign keeps whose jobs its workers are.
-    for (const std::string& setting : options_.running.slurm) {
-      if (!resumes) whole.insert(whole.end(), {"--slurm", setting});
-    }
+    if (dir != whole.end() && CampaignDirectory::IsCampaign(*(dir + 1))) whole = {"resume", *(dir + 1)};
+    for (const std::string& setting : options_.running.slurm) whole.insert(whole.end(), {"--slurm", setting});
     if (!options_.running.workers.empty()) whole.insert(whole.end(), {"--workers", options_.running.workers});
     if (!options_.running.audit.empty()) whole.insert(whole.end(), {"--audit", options_.running.audit});
     if (!options_.running.metrics_port.empty())
@@ -232,13 +229,10 @@ Status Claim(const std::string& directory, const std::string& what) {
 
 Result<ExitCode> PrintPlan(CommandContext& context, const ExamineOptions& options,
                            const Experiment& experiment, const ExaminationPlan& plan,
-                           const Examination& examination) {
+                           const Examination& examination, int workers) {
   Experiment search = experiment;
   search.search.algorithm = "random";
   TRY(const Forecast forecast, MakeForecast({{"", search, {}}}));
-  CampaignRun steps;
-  TRY(UseWorkers(context, options.running, experiment, options.experiment.experiment, steps));
-  const int workers = steps.MostWorkers();
   const double seconds = forecast.seconds_per_run * static_cast<double>(plan.runs) / workers;
   std::vector<Command> commands = examination.Searches();
   for (const Command& one : examination.Margins()) commands.push_back(one);
@@ -288,14 +282,20 @@ Result<ExitCode> RunExamine(CommandContext& context, const ExamineOptions& optio
                                     ? fmt::format("campaigns/{}-examined", experiment.name)
                                     : options.experiment.directory;
   Examination examination(context, options, experiment, directory, plan);
-  if (options.dry_run) return PrintPlan(context, options, experiment, plan, examination);
+  CampaignRun search;  // as all of its steps have them
+  search.directory = directory + "/search";
+  TRY(UseWorkers(context, options.running, experiment, {.experiment_file = options.experiment.experiment},
+                 search));
+  if (options.dry_run)
+    return PrintPlan(context, options, experiment, plan, examination, search.MostWorkers());
   TRY(Claim(directory, WriteExperiment(experiment, {fmt::format("{} runs", plan.runs)}, BuiltInCatalogue())));
   // Looked at first, as the runs would be for nothing; not held open, as a kill would leave a draft beside
   // it.
   TRY(OutputFile::Open(options.out));
   TRY(const ExitCode code, examination.Run());
   if (code != kExitDone) {
-    if (code == kExitStopped) PrintMessage(context, "go on with the whole examination: the same command");
+    if (code == kExitStopped || examination.steps() > 1)
+      PrintMessage(context, "go on with the whole examination: the same command");
     return code;
   }
   TRY(const ExaminationFacts facts, ReadExamination(directory));

@@ -233,8 +233,8 @@ Result<ExitCode> RunStoredFit(CommandContext& context, const FitOptions& options
   const std::string& dir = options.experiment.experiment;
   const bool of_new = !options.targets.empty() || !options.vary.empty() || !options.budget.empty() ||
                       !options.experiment.directory.empty() || !options.experiment.seed.empty() ||
-                      (!options.experiment.sets.empty() && options.predict.empty()) || options.dry_run ||
-                      options.print;
+                      (!options.experiment.sets.empty() && options.predict.empty()) ||
+                      !options.running.slurm.empty() || options.dry_run || options.print;
   if (of_new)
     return InvalidInput(fmt::format(
         "{} is a campaign: what it fits is decided; only -o, and --predict with --draws and --set, "

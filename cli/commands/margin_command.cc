@@ -64,7 +64,7 @@ Result<ExitCode> RunMargin(CommandContext& context, const MarginOptions& options
   const std::string& first = options.experiment.experiment;
   if (CampaignDirectory::IsCampaign(first)) {
     if (!options.vary.empty() || !options.on.empty() || !options.budget.empty() || !options.share.empty() ||
-        !options.experiment.sets.empty() || options.dry_run)
+        !options.experiment.sets.empty() || !options.running.slurm.empty() || options.dry_run)
       return InvalidInput(first + " is a campaign: what it looks for is decided, it is told again alone");
     return Tell(context, options, first);
   }

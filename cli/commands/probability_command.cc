@@ -22,7 +22,7 @@ struct ProbabilityOptions : LocalOptions {
 
   bool Any() const {
     return !vary.empty() || !on.empty() || !below.empty() || !budget.empty() || !within.empty() || plain ||
-           !experiment.sets.empty() || dry_run;
+           !experiment.sets.empty() || !running.slurm.empty() || dry_run;
   }
 };
 

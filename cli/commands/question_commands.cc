@@ -86,7 +86,7 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
   const std::string& first = options.experiment.experiment;
   if (*options.question.other != '\0' && CampaignDirectory::IsCampaign(first)) {
     if (!options.other.empty() || !asking.options.empty() || !options.experiment.sets.empty() ||
-        options.dry_run)
+        !options.running.slurm.empty() || options.dry_run)
       return InvalidInput(first + " is a campaign: what it compares is decided, it is told again alone");
     asking.place = first;
     return asking;
@@ -105,13 +105,14 @@ Result<Asking> AskingOf(CommandContext& context, const QuestionOptions& options)
 }
 
 // The campaign begins, or goes on where an earlier call with the same cases was stopped.
-Result<CampaignRun> RunOfCall(CommandContext& context, const Call& call, const RunningOptions& running) {
+Result<CampaignRun> RunOfCall(CommandContext& context, const Call& call, const RunningOptions& running,
+                              const JobsSource& source) {
   std::size_t cases = 0;
   for (const SearchPlan& search : call.searches) cases += search.cases.size();
   CampaignRun campaign;
   campaign.directory = call.directory;
   campaign.same_command_resumes = true;
-  TRY(UseWorkers(context, running, call.searches.front().experiment, "", campaign));
+  TRY(UseWorkers(context, running, call.searches.front().experiment, source, campaign));
   campaign.announcement = fmt::format("{} with fresh seeds, {}, in {}", Counted(cases, "case"),
                                       campaign.WorkersText(), call.directory);
   campaign.serving = running;
@@ -133,12 +134,15 @@ Result<CampaignRun> RunOfNewCampaign(CommandContext& context, Call& call, const 
 }
 
 // What has ended is done anew; what was stopped is gone on with.
-Status MakeRoom(CommandContext& context, const std::string& directory) {
-  if (!CampaignDirectory::IsCampaign(directory)) return Ok{};
-  TRY(const CampaignSummary earlier, context.campaigns.Read(directory));
-  if (!earlier.finished) return Ok{};
-  TRY(const bool lives, context.campaigns.MasterLives(directory));
-  if (lives) return Ok{};
+Result<bool> IsReplaced(CommandContext& context, const Call& call) {
+  if (!call.anew || !CampaignDirectory::IsCampaign(call.directory)) return false;
+  TRY(const CampaignSummary earlier, context.campaigns.Read(call.directory));
+  if (!earlier.finished) return false;
+  TRY(const bool lives, context.campaigns.MasterLives(call.directory));
+  return !lives;
+}
+
+Status Remove(const std::string& directory) {
   std::error_code error;
   fs::remove_all(directory, error);
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", directory, error.message())};
@@ -215,6 +219,7 @@ Result<ExitCode> RunAsStream(CommandContext& context, const QuestionOptions& opt
 
 Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& options) {
   const Place place = options.question.place;
+  TRY(CheckWorkers(options.running));
   if (options.from_stdin) return RunAsStream(context, options);
   TRY(const Asking asking, AskingOf(context, options));
   TRY(Call call, PlanCall(options.question, asking));
@@ -223,17 +228,18 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
   if (place == Place::kCampaign) {
     TRY(CheckOnlyWeWrite(options.place));
   }
-  if (call.anew) {
-    TRY(MakeRoom(context, call.directory));
+  TRY(const bool replaced, IsReplaced(context, call));
+  const JobsSource source{.parent = place == Place::kCampaign ? options.place : "", .anew = replaced};
+  TRY(CampaignRun campaign, place == Place::kNewCampaign ? RunOfNewCampaign(context, call, options)
+                                                         : RunOfCall(context, call, options.running, source));
+  if (options.dry_run) return PrintDryRun(context, campaign, call.searches);
+  if (replaced) {
+    TRY(Remove(call.directory));
   }
   if (place == Place::kCorpus) {
     TRY(MakeFolder(FolderOf(options.question, options.place)));
   }
-  TRY(CampaignRun campaign, place == Place::kNewCampaign ? RunOfNewCampaign(context, call, options)
-                                                         : RunOfCall(context, call, options.running));
-  if (options.dry_run) return PrintDryRun(context, campaign, call.searches);
-  if (options.question.looks_at_empty_arena && !campaign.jobs)
-    LookAtEmptyArena(context, options.place, campaign.session.workers);
+  if (options.question.looks_at_empty_arena) LookAtEmptyArena(context, options.place, campaign);
   ExitCode told = kExitDone;
   campaign.report = [&](const SessionReport& report) -> Status {
     if (report.end == CampaignEnd::kStopped && place == Place::kCorpus) return Ok{};

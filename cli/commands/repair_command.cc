@@ -245,12 +245,12 @@ Result<ExitCode> ProveAndTell(CommandContext& context, const RepairOptions& opti
   const std::vector<SearchPlan> searches = ProofSearches(repair, runs);
   CampaignRun campaign;
   campaign.directory = ProofOf(dir);
+  TRY(UseWorkers(context, options.running, repair.experiment, {.parent = dir}, campaign));
   campaign.announcement =
-      fmt::format("{} searches begin anew against the original and the repaired controller, in {}",
-                  searches.size(), campaign.directory);
+      fmt::format("{} searches begin anew against the original and the repaired controller, {}, in {}",
+                  searches.size(), campaign.WorkersText(), campaign.directory);
   campaign.goes_on_by = fmt::format("repair {}", PastedPath(dir));
   campaign.serving = options.running;
-  TRY(UseWorkers(context, options.running, repair.experiment, "", campaign));
   const bool begun = CampaignDirectory::IsCampaign(campaign.directory);
   campaign.run = [&](const SessionOptions& session) {
     return begun ? context.campaigns.Resume(campaign.directory, session)

@@ -108,7 +108,8 @@ Result<bool> IsSimulated(const Study& study, const std::string& directory) {
 // A study's directory holds campaigns, of a length that its file says.
 Result<ExitCode> ResumeStudy(CommandContext& context, const ResumeOptions& options) {
   const std::string& directory = options.directory;
-  if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty()) {
+  if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty() ||
+      !options.running.slurm.empty()) {
     return InvalidInput(
         fmt::format("{} holds a study: its file says how long its searches are, and "
                     "its workers are of this machine or of a cluster",
@@ -137,7 +138,12 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
   const bool bound = !options.bind.endpoint.empty();
   if (!bound && options.running.workers.empty()) {
     TRY(const std::optional<slurm::SlurmCampaign> submitted, slurm::SlurmCampaign::Find(options.directory));
-    if (submitted.has_value()) return ResumeSubmitted(context, options, *submitted);
+    const bool as_submitted = submitted && (options.running.slurm.empty() ||
+                                            submitted->settings().master == slurm::MasterPlace::kJob);
+    if (as_submitted && !options.running.slurm.empty())
+      return InvalidInput(
+          fmt::format("--slurm: the master of {0} is a job, which reads {0}/slurm.toml", options.directory));
+    if (as_submitted) return ResumeSubmitted(context, options, *submitted);
   }
   if (options.as_job)
     return InvalidInput(
@@ -146,10 +152,16 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
                     options.directory));
   // With --bind workers come from elsewhere, unless some are asked for.
   const bool none = bound && options.running.workers.empty();
-  TRY(const int workers, none ? Result<int>(0) : ParseWorkers(options.running.workers));
   CampaignRun campaign;
   campaign.directory = options.directory;
-  campaign.session.workers = workers;
+  if (!options.running.slurm.empty()) {
+    if (bound) return InvalidInput("--slurm goes without --bind: give --slurm bind=ENDPOINT");
+    TRY(const CampaignDirectory directory, CampaignDirectory::Open(options.directory));
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(directory));
+    TRY(UseWorkers(context, options.running, plans.front().experiment, {}, campaign));
+  } else {
+    TRY(campaign.session.workers, none ? Result<int>(0) : ParseWorkers(options.running.workers));
+  }
   campaign.serving = options.running;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
@@ -172,6 +184,7 @@ void AddResume(CommandParser& parser) {
            "make the campaign longer: a greater value of the key that sets the length of its search "
            "(search.generations, search.cases, search.runs)");
   AddRunningOptions(command, options.running);
+  AddJobsOption(command, options.running);
   AddBindOptions(command, options.bind);
   command.add_flag(
       "--as-job", options.as_job,

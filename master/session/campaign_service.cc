@@ -212,8 +212,12 @@ class Campaigns final : public CampaignService {
     TRY(CheckPlugins(campaign.directory.plugins_path(), plans));
     TRY(CheckStored(plans, *campaign.store));
     TRY(const CampaignSummary totals, SummariseTotals(plans, *campaign.store));
-    if (!totals.finished || options.feed != nullptr)
+    if (!totals.finished || options.feed != nullptr) {
+      if (!options.slurm.empty()) {
+        TRY(WriteFileAtomically(campaign.directory.slurm_path(), options.slurm, kReadableByAll));
+      }
       return CampaignServer(campaign, plans, golden_hashes, options).Serve();
+    }
     TRY(CampaignSummary summary, Summarise(plans, *campaign.store));
     return SessionReport{.summary = std::move(summary)};
   }

@@ -29,7 +29,7 @@ struct SessionOptions {
   int workers = 1;  // processes of the local pool; 0: workers come from elsewhere
   // Makes another pool than the local one.
   std::function<std::unique_ptr<WorkerPool>()> make_pool;
-  std::string slurm;  // the text of slurm.toml in a campaign that is made; "" = none
+  std::string slurm;  // a new text for the campaign's slurm.toml; "" = as it is
   // For a master that is a batch job: a living master is a twin that a lost node has left behind, and is made
   // to stop; and when a signal ends this one, its pool is left to the next.
   std::string batch_job;                   // its id; "" = no such master

@@ -141,6 +141,14 @@ TEST_F(Submit, JobsAreTheWorkersOfACommandThatAsksForThem) {
 
   EXPECT_EQ(Run({"evolve", "flocking", "--slurm", "memory=3G", "--workers", "2"}), kExitUsage);
   EXPECT_EQ(err_.str(), "gauntlet: --slurm goes without --workers: workers are jobs\n");
+  EXPECT_EQ(Run({"evolve", "flocking", "--slurm", "master=job"}), kExitUsage);
+  EXPECT_EQ(err_.str(),
+            "gauntlet: --slurm master=job: the master stays here, unless 'submit' makes it a job\n");
+  EXPECT_EQ(Run({"examine", "flocking", "--dry-run", "--slurm", "max_allocations=3", "--slurm",
+                 "workers_per_allocation=4"}),
+            kExitDone)
+      << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("with 12 workers"));
   EXPECT_EQ(Run({"margin", "flocking", "--vary", "noise.wheels.uniform=0..1", "--on", "random:20", "--slurm",
                  "partitoin=x"}),
             kExitUsage);

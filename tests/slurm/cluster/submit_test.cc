@@ -110,6 +110,43 @@ TEST_F(SlurmTest, AnExaminationTakesItsWorkersFromSlurm) {
   EXPECT_TRUE(QueueEmpties());
 }
 
+// It was begun on this machine; then its workers are jobs, which the next master takes up without being told.
+TEST_F(SlurmTest, AQuestionGoesOnWithTheJobsThatItHad) {
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "1", "--quiet", "--dir", dir()}).exit_code, 0);
+  StartCluster({"--nodes", "1", "--cpus", "2"});
+  const auto ask = [&](const std::vector<std::string>& workers) {
+    std::vector<std::string> question = {"confirm", dir(), "1", "--replicates", "20000", "--no-progress"};
+    question.insert(question.end(), workers.begin(), workers.end());
+    return StartGauntlet(question);
+  };
+  const std::string answers = scratch_ / "c/confirm";
+  const auto has_a_worker = [&] {
+    std::error_code none;
+    for (const auto& answer : std::filesystem::directory_iterator(answers, none)) {
+      const auto status =
+          nlohmann::json::parse(Gauntlet({"status", answer.path(), "--json"}).out, nullptr, false);
+      if (status.is_object() && status.value("state", "") == "running" && status.value("workers", 0) == 1)
+        return true;
+    }
+    return false;
+  };
+  std::unique_ptr<Process> here = ask({"--workers", "1"});
+  ASSERT_TRUE(Eventually(has_a_worker, 2 * kPatience)) << here->Err();
+  here.reset();
+  std::unique_ptr<Process> killed =
+      ask({"--slurm", "bind=tcp://127.0.0.1:*", "--slurm", "max_allocations=1"});
+  ASSERT_TRUE(Eventually(has_a_worker, 2 * kPatience)) << killed->Err();
+  killed.reset();
+  EXPECT_THAT(QueueLines(), SizeIs(1));
+  const std::unique_ptr<Process> next = ask({});
+  ASSERT_TRUE(Eventually(has_a_worker, 2 * kPatience)) << next->Err();
+  next->Signal(SIGINT);
+  EXPECT_EQ(next->Wait().exit_code, 3) << next->Err();
+  EXPECT_THAT(next->Err(), HasSubstr("workers from Slurm"));
+  EXPECT_TRUE(QueueEmpties());
+  EXPECT_THAT(QueueLines({"--states=all"}), SizeIs(1)) << "no other was needed";
+}
+
 // Master and workers on other nodes have the plug-in from the campaign's directory.
 TEST_F(SlurmTest, ASubmittedSearchWithAPluginEndsLikeALocalOneWithoutItsLibrary) {
   StartCluster({"--nodes", "2", "--cpus", "4"});
