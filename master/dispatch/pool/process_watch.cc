@@ -47,8 +47,10 @@ std::vector<std::uint64_t> ProcessWatch::TakeEnded() {
   std::array<epoll_event, 64> events{};
   for (int count = 0; (count = epoll_wait(epoll_.get(), events.data(), events.size(), 0)) > 0;) {
     for (int i = 0; i < count; ++i) {
-      ended.push_back(events.at(static_cast<std::size_t>(i)).data.u64);
-      Forget(ended.back());
+      // A copy: the kernel's struct is packed, and its members are not aligned for a reference.
+      const std::uint64_t name = events.at(static_cast<std::size_t>(i)).data.u64;
+      ended.push_back(name);
+      Forget(name);
     }
   }
   return ended;
