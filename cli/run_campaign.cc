@@ -227,7 +227,7 @@ Status PrintFinished(CommandContext& context, const CampaignSummary& summary, co
 
 int CampaignRun::MostWorkers() const {
   if (!jobs) return session.workers;
-  const slurm::PoolLimits& pool = jobs->settings().pool;
+  const slurm::PoolLimits pool = jobs->limits();
   return pool.max_allocations * pool.workers_per_allocation;
 }
 

@@ -117,16 +117,19 @@ Status SlurmCampaign::MakeScripts() {
   return Ok{};
 }
 
+PoolLimits SlurmCampaign::limits() const {
+  PoolLimits limits = settings_.pool;
+  if (cluster_.hosts.empty()) return limits;
+  // Nothing waits there, and more than there is room for would only be refused.
+  const int room = SshHosts(cluster_, limits.workers_per_allocation).room();
+  limits.max_allocations = limits.max_queued = std::min(limits.max_allocations, room);
+  return limits;
+}
+
 std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<SlurmClient> client) const {
   SlurmPoolOptions options;
-  options.limits = settings_.pool;
+  options.limits = limits();
   options.cluster = cluster_;
-  if (!cluster_.hosts.empty()) {
-    // Nothing waits there, and more than there is room for would only be refused.
-    const int room = SshHosts(cluster_, settings_.pool.workers_per_allocation).room();
-    options.limits.max_allocations = options.limits.max_queued =
-        std::min(options.limits.max_allocations, room);
-  }
   options.request = settings_.worker_job;
   options.job_template = worker_template_;
   options.job = WorkersJob();

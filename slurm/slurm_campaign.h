@@ -25,6 +25,8 @@ class SlurmCampaign {
 
   const SlurmSettings& settings() const { return settings_; }
   const Cluster& cluster() const { return cluster_; }
+  // As the settings say, but no more than the cluster's hosts have room for.
+  PoolLimits limits() const;
   // What speaks to the cluster.
   std::unique_ptr<SlurmClient> MakeClient() const;
   // All jobs of the campaign have names that begin so. Made of the settings' tag and the directory's absolute

@@ -73,7 +73,7 @@ Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options
   TRY(const slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
 
   TRY(TestJobs(context, campaign, options.dry_run));
-  if (options.dry_run) return PrintCost(context, searches, settings.pool);
+  if (options.dry_run) return PrintCost(context, searches, campaign.limits());
   const bool as_job = settings.master == slurm::MasterPlace::kJob;
   if (!as_job) {
     TRY(TryToListen(settings.bind));

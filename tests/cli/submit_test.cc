@@ -149,6 +149,12 @@ TEST_F(Submit, JobsAreTheWorkersOfACommandThatAsksForThem) {
             kExitDone)
       << err_.str();
   EXPECT_THAT(out_.str(), HasSubstr("with 12 workers"));
+  std::ofstream(root_ / "lab.toml") << "like = \"ssh\"\nhosts = [\"a:2\", \"b:2\"]\n";
+  EXPECT_EQ(Run({"examine", "flocking", "--dry-run", "--slurm", "cluster=" + (root_ / "lab.toml").string(),
+                 "--slurm", "account=", "--slurm", "workers_per_allocation=2"}),
+            kExitDone)
+      << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("with 4 workers")) << "for more the hosts have no room";
   EXPECT_EQ(Run({"margin", "flocking", "--vary", "noise.wheels.uniform=0..1", "--on", "random:20", "--slurm",
                  "partitoin=x"}),
             kExitUsage);
