@@ -138,12 +138,10 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
   const bool bound = !options.bind.endpoint.empty();
   if (!bound && options.running.workers.empty()) {
     TRY(const std::optional<slurm::SlurmCampaign> submitted, slurm::SlurmCampaign::Find(options.directory));
-    const bool as_submitted = submitted && (options.running.slurm.empty() ||
-                                            submitted->settings().master == slurm::MasterPlace::kJob);
-    if (as_submitted && !options.running.slurm.empty())
+    if (submitted && options.running.slurm.empty()) return ResumeSubmitted(context, options, *submitted);
+    if (submitted && submitted->settings().master == slurm::MasterPlace::kJob)
       return InvalidInput(
           fmt::format("--slurm: the master of {0} is a job, which reads {0}/slurm.toml", options.directory));
-    if (as_submitted) return ResumeSubmitted(context, options, *submitted);
   }
   if (options.as_job)
     return InvalidInput(
