@@ -241,9 +241,8 @@ Status CheckWorkers(const RunningOptions& options) {
     return Ok{};
   }
   if (!options.workers.empty()) return InvalidInput("--slurm goes without --workers: workers are jobs");
-  TRY(const slurm::SlurmSettings settings, slurm::ReadSlurmSettings({}, options.slurm));
-  const bool as_job = std::ranges::count(options.slurm, "master=job") > 0;
-  if (as_job)
+  TRY(slurm::ReadSlurmSettings({}, options.slurm));
+  if (std::ranges::count(options.slurm, "master=job") > 0)
     return InvalidInput("--slurm master=job: the master stays here, unless 'submit' makes it a job");
   return Ok{};
 }
@@ -255,13 +254,12 @@ Status UseWorkers(CommandContext& context, const RunningOptions& options, const 
   if (!source.anew) {
     TRY(like, slurm::SlurmCampaign::Find(campaign.directory));
   }
-  if (options.slurm.empty() && like && options.workers.empty()) {
-    campaign.jobs = std::move(like);
+  if (options.slurm.empty()) {
+    TRY(campaign.session.workers, ParseWorkers(options.workers));
+    if (options.workers.empty()) campaign.jobs = std::move(like);
     return Ok{};
   }
-  TRY(campaign.session.workers, ParseWorkers(options.workers));
-  if (options.slurm.empty()) return Ok{};
-  bool kept = like.has_value();
+  const bool of_its_own = like.has_value();
   if (!like && !source.parent.empty()) {
     TRY(like, slurm::SlurmCampaign::Find(source.parent));
   }
@@ -284,9 +282,8 @@ Status UseWorkers(CommandContext& context, const RunningOptions& options, const 
   const std::string text = slurm::WriteSlurmSettings(settings);
   if (text != before) {
     TRY(TestJobs(context, jobs, /*print=*/false));
-    kept = false;
   }
-  if (!kept) campaign.session.slurm = text;
+  if (!of_its_own || text != before) campaign.session.slurm = text;
   campaign.jobs = std::move(jobs);
   return Ok{};
 }

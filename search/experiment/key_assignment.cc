@@ -71,9 +71,9 @@ bool IsNamed(std::string_view path, std::string_view name) {
 
 // The only key whose path has all words of the name in it; "" when there is none, or more.
 std::string_view WithWordsOf(std::string_view name, const std::vector<std::string_view>& known) {
+  const std::vector<std::string> words = Split(name, '_');
   std::string_view found;
   for (const std::string_view path : known) {
-    const auto words = Split(name, '_');
     const bool all = std::ranges::all_of(words, [&](const auto& word) {
       return word.size() > 2 && path.find(word) != std::string_view::npos;
     });
